@@ -1,0 +1,39 @@
+"""The case file: frozen models, SI inside, units and every check at the border."""
+
+from mpsdem.case.case import Case, load_case
+from mpsdem.case.errors import CaseError, Problem
+from mpsdem.case.fidelity import Fidelity
+from mpsdem.case.liquid import Liquid
+from mpsdem.case.output import Output
+from mpsdem.case.pipe import Pipe
+from mpsdem.case.solids import (
+    Block,
+    Distribution,
+    List,
+    Lognormal,
+    Random,
+    Sieve,
+    Solids,
+    Uniform,
+    Wall,
+)
+
+__all__ = [
+    "Block",
+    "Case",
+    "CaseError",
+    "Distribution",
+    "Fidelity",
+    "Liquid",
+    "List",
+    "Lognormal",
+    "Output",
+    "Pipe",
+    "Problem",
+    "Random",
+    "Sieve",
+    "Solids",
+    "Uniform",
+    "Wall",
+    "load_case",
+]

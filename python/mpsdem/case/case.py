@@ -1,0 +1,324 @@
+"""The case: everything that decides a run, as one value that TOML can hold."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from mpsdem.case.errors import CaseError, Problem
+from mpsdem.case.fidelity import Fidelity
+from mpsdem.case.liquid import Liquid
+from mpsdem.case.output import Output
+from mpsdem.case.part import Part
+from mpsdem.case.pipe import Pipe
+from mpsdem.case.solids import Block, List, Random, Solids
+from mpsdem.case.units import Quantity
+
+# Densest random packing of equal spheres; Scott & Kilgour (1969), doi:10.1088/0022-3727/2/6/311.
+_DENSEST_PACKING = 0.64
+
+
+class Case(Part):
+    """A pipe, what is in it, and how accurately to compute it. SI units.
+
+    Axes: x along the pipe from its inlet, y horizontal, z normal to the axis in the vertical plane
+    (up when the pipe is level); y = z = 0 on the axis.
+
+    Parameters
+    ----------
+    title : str
+        What the figures are headed with.
+    end_time : float
+        Time at which the run stops [s]; it starts at 0.
+    gravity : float
+        Magnitude of the acceleration of gravity [m/s2]; 0 switches it off.
+    pipe : Pipe
+        The bore.
+    liquid : Liquid, optional
+        What fills it; None for dry solids.
+    solids : Solids, optional
+        What is carried; None for clear liquid.
+    fidelity : Fidelity
+        Numerics; all else is nature.
+    output : Output
+        What the run leaves behind.
+
+    Raises
+    ------
+    CaseError
+        If anything is wrong, with all of it.
+    """
+
+    title: str = ""
+    end_time: Annotated[float, Quantity("s", above=0.0)]
+    gravity: Annotated[float, Quantity("m/s2", at_least=0.0)] = 9.807
+    pipe: Pipe
+    liquid: Liquid | None = None
+    solids: Solids | None = None
+    fidelity: Fidelity = Fidelity()
+    output: Output = Output()
+
+    @classmethod
+    def from_toml(cls, text: str) -> Self:
+        """Read a case from TOML.
+
+        Raises
+        ------
+        CaseError
+            If `text` is not TOML, or not a case.
+        """
+        try:
+            table = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise CaseError([Problem(rule=f"not valid TOML: {error}")]) from None
+        return cls(**table)
+
+    def to_toml(self) -> str:
+        """Write the case as TOML, all defaults resolved; `from_toml` gives back an equal case."""
+        table = self.model_dump(exclude_none=True)
+        scalars = {key: value for key, value in table.items() if not isinstance(value, dict)}
+        blocks = [_toml_lines(scalars)] + [
+            f"[{key}]\n{_toml_lines(value)}" for key, value in table.items() if key not in scalars
+        ]
+        return "\n".join(blocks)
+
+    def with_(self, **changes: Any) -> Self:
+        """Make a case that differs from this one.
+
+        Parameters
+        ----------
+        **changes
+            Fields with their new values. A dict is merged into the table it names, at any depth;
+            None takes an optional field out.
+
+        Returns
+        -------
+        Case
+            The new case, checked as if it were read from a file.
+
+        Examples
+        --------
+        >>> from mpsdem.case import Case
+        >>> case = Case(
+        ...     end_time=1.0,
+        ...     pipe={"radius": 0.1, "length": 4.0},
+        ...     liquid={"density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0},
+        ... )
+        >>> case.with_(liquid={"bulk_velocity": "2 m/s"}).liquid.bulk_velocity
+        2.0
+        """
+        return type(self)(**_merged(self.model_dump(exclude_none=True), changes))
+
+    def with_settings(self, settings: Sequence[str]) -> Self:
+        """Make a case with dotted keys set, as on the command line.
+
+        Parameters
+        ----------
+        settings : sequence of str
+            ``"solids.density=2500"``; a value that is not TOML, such as ``20 mm``, is a string.
+        """
+        changes: dict[str, Any] = {}
+        for setting in settings:
+            key, equals, text = setting.partition("=")
+            if not equals or not key.strip():
+                rule = f"{setting!r} must have the form key=value, such as solids.density=2500"
+                raise CaseError([Problem(rule=rule)])
+            *parents, last = key.strip().split(".")
+            change: dict[str, Any] = {last: _toml_value(text.strip())}
+            for parent in reversed(parents):
+                change = {parent: change}
+            changes = _merged(changes, change)
+        return self.with_(**changes)
+
+    def differences(self, other: Case) -> list[str]:
+        """List the dotted keys in which two cases differ, with both values.
+
+        Parameters
+        ----------
+        other : Case
+            The case to compare with; its values are named second.
+        """
+        ours, theirs = _flat(self.model_dump()), _flat(other.model_dump())
+        return [
+            f"{key}: {_shown(ours.get(key))} != {_shown(theirs.get(key))}"
+            for key in ours | theirs
+            if ours.get(key) != theirs.get(key)
+        ]
+
+    @property
+    def solids_count(self) -> int:
+        """Number of solids."""
+        if self.solids is None:
+            return 0
+        match self.solids.arrangement:
+            case List(positions=positions):
+                return len(positions)
+            case Block(count=count, counts=counts):
+                return math.prod(counts) if count is None else count
+        if self.solids.count is not None:
+            return self.solids.count
+        assert self.solids.volume_fraction is not None
+        return round(self.solids.volume_fraction * self.pipe.bore_volume / self.solids.mean_volume)
+
+    @property
+    def solids_fraction(self) -> float:
+        """Volume of the solids over that of the bore [-]."""
+        volume = 0.0 if self.solids is None else self.solids_count * self.solids.mean_volume
+        return volume / self.pipe.bore_volume
+
+    def problems(self) -> Iterable[Problem]:
+        """Yield what is wrong across parts."""
+        if self.liquid is None and self.solids is None:
+            yield Problem(rule="a case needs [liquid], [solids] or both")
+        if self.solids is not None:
+            yield from self._solids_that_do_not_fit(self.solids)
+        if self.output.every > self.end_time:
+            yield Problem(
+                field="output.every",
+                value=self.output.every,
+                unit="s",
+                rule=f"must be <= {self.end_time} s, the end_time",
+            )
+        for i, time in enumerate(self.output.times or ()):
+            if time > self.end_time:
+                yield Problem(
+                    field=f"output.times[{i}]",
+                    value=time,
+                    unit="s",
+                    rule=f"must be <= {self.end_time} s, the end_time",
+                )
+
+    def _solids_that_do_not_fit(self, solids: Solids) -> Iterable[Problem]:
+        largest = solids.largest_diameter
+        listed = isinstance(solids.arrangement, List) and solids.arrangement.diameters is not None
+        field = "solids.arrangement.diameters" if listed else "solids.diameter"
+        if largest >= 2 * self.pipe.radius:
+            yield Problem(
+                field=field,
+                value=largest,
+                unit="m",
+                rule=f"must be < {2 * self.pipe.radius:g} m, the bore of the pipe",
+            )
+            return
+        if self.pipe.length < 2 * largest:
+            yield Problem(
+                field="pipe.length",
+                value=self.pipe.length,
+                unit="m",
+                rule=f"must be >= {2 * largest:g} m, two of the largest diameters",
+            )
+            return
+        if self.solids_count == 0:
+            yield Problem(
+                field="solids.volume_fraction",
+                value=solids.volume_fraction,
+                rule=f"is less than one solid of {solids.mean_volume:g} m3",
+                remedy="raise it, or leave out [solids] for clear liquid",
+            )
+        stretch = 1.0
+        if isinstance(solids.arrangement, Random):
+            stretch = solids.arrangement.end - solids.arrangement.start
+        if self.solids_fraction > _DENSEST_PACKING * stretch:
+            room = int(_DENSEST_PACKING * stretch * self.pipe.bore_volume / solids.mean_volume)
+            name = "count" if solids.volume_fraction is None else "volume_fraction"
+            counted = isinstance(solids.arrangement, Random)
+            yield Problem(
+                field=f"solids.{name}" if counted else "solids.arrangement",
+                value=getattr(solids, name) if counted else None,
+                rule=f"{self.solids_count} solids do not fit: at the densest random packing, "
+                f"{_DENSEST_PACKING}, their stretch of the bore holds {room}",
+                remedy="take fewer or smaller solids, or a longer pipe",
+            )
+        if isinstance(solids.arrangement, List):
+            for i, (x, _, _) in enumerate(solids.arrangement.positions):
+                if not 0 <= x < self.pipe.length:
+                    yield Problem(
+                        field=f"solids.arrangement.positions[{i}]",
+                        value=x,
+                        unit="m",
+                        rule=f"x must lie from 0 to less than {self.pipe.length:g} m, the length",
+                    )
+
+
+def load_case(path: str | Path) -> Case:
+    """Read a case file.
+
+    Parameters
+    ----------
+    path : str or Path
+        TOML file in UTF-8.
+
+    Raises
+    ------
+    CaseError
+        If there is no such file, or it holds no valid case.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise CaseError([Problem(rule=f"cannot be read: {error.strerror}")], str(path)) from None
+    except UnicodeDecodeError:
+        raise CaseError([Problem(rule="is not a text file in UTF-8")], str(path)) from None
+    try:
+        return Case.from_toml(text)
+    except CaseError as error:
+        raise CaseError(error.problems, str(path)) from None
+
+
+def _merged(table: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(table)
+    for key, new in changes.items():
+        old = merged.get(key)
+        new = new.model_dump(exclude_none=True) if isinstance(new, Part) else new
+        same_kind = (
+            isinstance(old, Mapping)
+            and isinstance(new, Mapping)
+            and new.get("kind") in (None, old.get("kind"))
+        )
+        merged[key] = _merged(old, new) if same_kind else new  # type: ignore[arg-type]
+    return merged
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            flat |= _flat(value, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = value
+    return flat
+
+
+def _shown(value: object) -> str:
+    return "not given" if value is None else repr(value)
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        table = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    return table["value"] if len(table) == 1 else text
+
+
+def _toml_lines(table: Mapping[str, Any]) -> str:
+    return "".join(f"{key} = {_toml(value)}\n" for key, value in table.items())
+
+
+def _toml(value: object) -> str:
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case tuple():
+            return f"[{', '.join(map(_toml, value))}]"
+        case dict():
+            inner = ", ".join(f"{key} = {_toml(entry)}" for key, entry in value.items())
+            return f"{{ {inner} }}" if inner else "{}"
+        case _:
+            return repr(value)

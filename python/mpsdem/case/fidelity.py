@@ -1,0 +1,48 @@
+"""Numerics: how accurately the case is computed, apart from what it is."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from mpsdem.case.part import Part
+from mpsdem.case.units import Quantity, Whole
+
+# Restitution stays within 0.001 at 0.1; bulk flow does not move up to 0.5.
+_RAYLEIGH_FRACTION = {"quick": 0.2, "balanced": 0.1, "fine": 0.05}
+
+
+class Fidelity(Part):
+    """A level, and whatever is to differ from it.
+
+    Parameters
+    ----------
+    level : {"quick", "balanced", "fine"}
+        Sets all that is not given below.
+    rayleigh_fraction : float, optional
+        Time step of the solids over the Rayleigh time of the smallest of them [-]; at most 0.5.
+    solid_step : float, optional
+        Time step of the solids [s]; refused by the plan if it exceeds a limit.
+    coupling_step : float, optional
+        Time between two exchanges with the liquid [s].
+    stiffness_factor : float
+        Multiplies every modulus and stiffness [-]; less than 1 buys larger steps with overlap.
+    smoothing_radius : float, optional
+        Radius over which the void fraction is averaged [m]; by default 2.5 largest diameters.
+    threads : int
+        Threads of the kernels; 0 leaves the choice to the program. Results do not depend on it.
+    """
+
+    level: Literal["quick", "balanced", "fine"] = "balanced"
+    rayleigh_fraction: Annotated[float, Quantity(above=0.0, at_most=0.5)] | None = None
+    solid_step: Annotated[float, Quantity("s", above=0.0)] | None = None
+    coupling_step: Annotated[float, Quantity("s", above=0.0)] | None = None
+    stiffness_factor: Annotated[float, Quantity(above=0.0, at_most=1.0)] = 1.0
+    smoothing_radius: Annotated[float, Quantity("m", above=0.0)] | None = None
+    threads: Annotated[int, Whole(at_least=0)] = 0
+
+    @property
+    def resolved_rayleigh_fraction(self) -> float:
+        """Share of the Rayleigh time that a step of the solids may take [-]."""
+        if self.rayleigh_fraction is not None:
+            return self.rayleigh_fraction
+        return _RAYLEIGH_FRACTION[self.level]

@@ -1,0 +1,31 @@
+"""What a run leaves behind."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from mpsdem.case.part import FromList, Part
+from mpsdem.case.units import Quantity
+
+
+class Output(Part):
+    """Frames, figures and checkpoints.
+
+    Parameters
+    ----------
+    every : float
+        Time between two frames of the results [s].
+    figures : bool
+        Whether the run ends with its figures drawn.
+    times : tuple of float, optional
+        Times of the side views and cross-sections [s]; by default the program chooses.
+    checkpoint_every : float, optional
+        Simulated time between two checkpoints [s]; by default one a minute of wall clock.
+    """
+
+    every: Annotated[float, Quantity("s", above=0.0)] = 0.1
+    figures: bool = True
+    times: Annotated[tuple[Annotated[float, Quantity("s", at_least=0.0)], ...], FromList] | None = (
+        None
+    )
+    checkpoint_every: Annotated[float, Quantity("s", above=0.0)] | None = None
