@@ -1,0 +1,24 @@
+"""A run's directory: written safely, read lazily. Works without the compiled core."""
+
+from mpsdem.results.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
+from mpsdem.results.errors import CheckpointError, LockError, OutputError, ResultsError
+from mpsdem.results.lock import DirectoryLock
+from mpsdem.results.reader import Field, Results
+from mpsdem.results.summary import SUMMARY_KEYS, write_summary
+from mpsdem.results.writer import ResultsWriter
+
+__all__ = [
+    "SUMMARY_KEYS",
+    "Checkpoint",
+    "CheckpointError",
+    "DirectoryLock",
+    "Field",
+    "LockError",
+    "OutputError",
+    "Results",
+    "ResultsError",
+    "ResultsWriter",
+    "read_checkpoint",
+    "write_checkpoint",
+    "write_summary",
+]

@@ -1,0 +1,63 @@
+"""The names that a results file may hold, each with its unit and meaning: NOTATION as data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FieldInfo:
+    """Unit, meaning and NumPy type of one dataset; "1" is the unit of a pure number."""
+
+    unit: str
+    description: str
+    dtype: str = "float64"
+
+
+def _table(
+    *rows: tuple[str, str, str] | tuple[str, str, str, str],
+) -> Mapping[str, FieldInfo]:
+    return MappingProxyType(
+        {
+            name: FieldInfo(unit=unit, description=text, dtype=dtype[0] if dtype else "float64")
+            for name, unit, text, *dtype in rows
+        }
+    )
+
+
+TIME = FieldInfo(unit="s", description="Simulated time of each frame")
+
+SOLIDS = _table(
+    ("radius", "m", "Radius of each solid"),
+    ("density", "kg/m3", "Density of each solid"),
+    ("position", "m", "Centre of each solid; x wrapped into [0, pipe length)"),
+    ("velocity", "m/s", "Velocity of each solid's centre"),
+    ("spin", "rad/s", "Angular velocity of each solid"),
+    ("laps", "1", "Times each solid left the outlet and came back at the inlet", "int32"),
+    ("void_fraction", "1", "Share of liquid in the surroundings of each solid"),
+    ("liquid_velocity", "m/s", "Undisturbed liquid velocity at each solid"),
+    ("drag_force", "N", "Force of the liquid on each solid, buoyancy apart"),
+)
+
+LIQUID = _table(
+    ("profile_radius", "m", "Distances from the pipe axis at which the profile is given"),
+    ("profile_velocity", "m/s", "Axial liquid velocity at those distances"),
+)
+
+DIAGNOSTICS = _table(
+    ("pressure_gradient", "Pa/m", "Loss of pressure along the axis, static head apart"),
+    ("bulk_velocity", "m/s", "Liquid flow rate over the cross-section of the bore"),
+    ("solids_mean_velocity", "m/s", "Axial velocity of the solids, weighted with their mass"),
+    ("largest_overlap", "1", "Largest contact overlap over the radius, since the last frame"),
+    ("kinetic_energy", "J", "Kinetic energy of the solids, spin included"),
+    ("elastic_energy", "J", "Energy stored in the contacts"),
+    ("contacts", "1", "Number of touching pairs, walls included", "int64"),
+    ("wall_force", "N", "Mean force of the walls on the solids since the last frame"),
+    ("drag_force", "N", "Mean force of the liquid on all solids since the last frame"),
+)
+
+GROUPS: Mapping[str, Mapping[str, FieldInfo]] = MappingProxyType(
+    {"solids": SOLIDS, "liquid": LIQUID, "diagnostics": DIAGNOSTICS}
+)

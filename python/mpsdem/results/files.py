@@ -1,0 +1,110 @@
+"""Files that are either whole or absent, and errors that say what to do."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import h5py  # type: ignore[import-untyped]
+
+from mpsdem.results.errors import OutputError
+
+RESULTS = "results.h5"
+CHECKPOINT = "checkpoint.h5"
+SUMMARY = "summary.json"
+CASE = "case.toml"
+
+_REMEDY = {
+    errno.ENOSPC: "the disk is full: free some space",
+    errno.EDQUOT: "the disk quota is used up: free some space",
+    errno.EACCES: "permission denied: choose a directory that you may write to",
+    errno.EPERM: "not permitted: choose a directory that you may write to",
+    errno.EROFS: "the file system is read-only: choose another directory",
+    errno.ENOTDIR: "a part of the path is a file, not a directory: choose another one",
+    errno.EEXIST: "a file of this name is in the way: choose another directory",
+    errno.ENAMETOOLONG: "the name is too long: choose a shorter one",
+}
+
+
+def output_error(path: Path, error: Exception) -> OutputError:
+    """The same trouble in words, with the path and, where there is one, the remedy."""
+    number = getattr(error, "errno", None)
+    return OutputError(f"cannot write {path}: {_REMEDY.get(number or 0, str(error))}")
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn the system's error about `path` into an `OutputError`."""
+    try:
+        yield
+    except OSError as error:
+        raise output_error(path, error) from error
+
+
+def make_directory(path: Path) -> Path:
+    """Create `path` with its parents where absent, or raise `OutputError`."""
+    with writing(path):
+        path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file that is at every instant either the old one or the new one, whole.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its directory exists.
+    content : bytes
+        What it shall hold.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written; a file that stood there before is then untouched.
+    """
+    draft = path.with_name(path.name + ".part")
+    try:
+        with writing(path):
+            with draft.open("wb") as file:
+                file.write(content)
+                file.flush()
+                os.fsync(file.fileno())
+            draft.replace(path)
+            _sync_directory(path.parent)
+    except OutputError:
+        with suppress(OSError):
+            draft.unlink()
+        raise
+
+
+def _sync_directory(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def new_hdf5(path: Path) -> Iterator[h5py.File]:
+    """Build a small HDF5 file in memory and write it whole, as HDF5 does not survive a full disk.
+
+    Parameters
+    ----------
+    path : Path
+        The file to write when the block ends without an error.
+
+    Yields
+    ------
+    h5py.File
+        An empty file to fill.
+    """
+    with h5py.File(path, "w", driver="core", backing_store=False, libver="latest") as file:
+        yield file
+        file.flush()
+        image = file.id.get_file_image()
+    write_atomically(path, image)
