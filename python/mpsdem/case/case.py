@@ -222,6 +222,12 @@ class Case(Part):
         stretch = 1.0
         if isinstance(solids.arrangement, Random):
             stretch = solids.arrangement.end - solids.arrangement.start
+            if stretch * self.pipe.length < largest:
+                yield Problem(
+                    field="solids.arrangement.end",
+                    value=solids.arrangement.end,
+                    rule=f"must leave {largest:g} m after the start, the largest diameter",
+                )
         if self.solids_fraction > _DENSEST_PACKING * stretch:
             room = int(_DENSEST_PACKING * stretch * self.pipe.bore_volume / solids.mean_volume)
             name = "count" if solids.volume_fraction is None else "volume_fraction"
