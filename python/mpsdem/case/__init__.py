@@ -8,6 +8,7 @@ from mpsdem.case.output import Output
 from mpsdem.case.pipe import Pipe
 from mpsdem.case.solids import (
     Block,
+    ContactMaterial,
     Distribution,
     List,
     Lognormal,
@@ -22,6 +23,7 @@ __all__ = [
     "Block",
     "Case",
     "CaseError",
+    "ContactMaterial",
     "Distribution",
     "Fidelity",
     "Liquid",

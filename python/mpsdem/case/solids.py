@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Tag
@@ -255,6 +256,17 @@ class Wall(Part):
     rolling_friction: Friction | None = None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactMaterial:
+    """What a contact law needs to know of two bodies: Young's modulus [Pa], the others [-]."""
+
+    youngs_modulus: float
+    poisson_ratio: float
+    restitution: float
+    friction: float
+    rolling_friction: float
+
+
 class Solids(Part):
     """Spheres of one material.
 
@@ -378,12 +390,10 @@ class Solids(Part):
         return math.pi / 6 * cube
 
     @property
-    def at_wall(self) -> Wall:
-        """Material of a contact with the wall, every value filled in."""
-        return Wall(
-            **{name: getattr(self, name) for name in Wall.model_fields}
-            | self.wall.model_dump(exclude_none=True)
-        )
+    def at_wall(self) -> ContactMaterial:
+        """Material of a contact with the wall: that of the solids where `wall` does not differ."""
+        of_solids = {name: getattr(self, name) for name in Wall.model_fields}
+        return ContactMaterial(**of_solids | self.wall.model_dump(exclude_none=True))
 
     @property
     def _bounds(self) -> tuple[float, float]:

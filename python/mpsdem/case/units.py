@@ -16,7 +16,9 @@ from mpsdem.case.errors import Problem, refusal
 if TYPE_CHECKING:
     import pint
 
-_NUMBER_AND_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+_NUMBER_AND_UNIT = re.compile(
+    r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\s\d.,].*?)?\s*"
+)
 _EXPONENT = re.compile(r"(?<=[A-Za-z])(-?\d+)(?![\w.])")  # the 3 of kg/m3
 
 
@@ -108,7 +110,7 @@ class Quantity(Range):
         match = _NUMBER_AND_UNIT.fullmatch(text)
         if match is None:
             raise self.refuse(f"must be a number{self._unit_in_words}")
-        number, unit = float(match[1]), match[2]
+        number, unit = float(match[1]), match[2] or ""
         try:
             given = _parsed(unit)
         except Exception:  # pint's parser raises a dozen kinds, down to AssertionError

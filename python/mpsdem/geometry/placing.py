@@ -234,7 +234,9 @@ def _through_the_wall(position: FloatArray, radius: FloatArray, pipe: Pipe) -> l
         f"through the wall at {pipe.radius:g} m"
         for i in outside[:_NAMED]
     ]
-    return _listed(named, len(outside), f"{len(outside)} of {len(radius)} solids overlap the wall")
+    return _listed(
+        named, len(outside), f"overlap of the wall by {len(outside)} of {len(radius)} solids"
+    )
 
 
 def _into_each_other(position: FloatArray, radius: FloatArray, pipe: Pipe) -> list[Problem]:
@@ -247,7 +249,7 @@ def _into_each_other(position: FloatArray, radius: FloatArray, pipe: Pipe) -> li
         f"solid {second[k]} at {_point(position[second[k]])} overlap by {overlap[k]:.6g} m"
         for k in deep[:_NAMED]
     ]
-    return _listed(named, len(deep), f"{len(deep)} pairs of solids overlap")
+    return _listed(named, len(deep), f"overlap in {len(deep)} pairs of solids")
 
 
 def _listed(named: list[str], count: int, summary: str) -> list[Problem]:

@@ -1,0 +1,49 @@
+"""The case files that are shipped."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from mpsdem.case import load_case
+from mpsdem.geometry import place_solids
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
+def test_a_shipped_case_can_be_read_and_placed(path):
+    case = load_case(path)
+    assert len(place_solids(case).radius) == case.solids_count
+
+
+def test_the_horizontal_pipe_has_the_numbers_of_the_paper():
+    case = load_case(CASES / "horizontal_pipe.toml")
+    assert (case.pipe.radius, case.pipe.length, case.gravity) == (0.1, 4.0, 9.807)
+    assert case.liquid.bulk_velocity * 2 * case.pipe.radius / case.liquid.kinematic_viscosity == (
+        pytest.approx(2e5)
+    )
+    assert case.solids_count == 8**3
+    assert (case.solids.diameter, case.solids.density) == (0.02, 2700.0)
+    assert (case.solids.youngs_modulus, case.solids.poisson_ratio) == (1e8, 0.2)
+    assert (case.solids.friction, case.solids.restitution) == (0.2, 0.9)
+    assert case.end_time == 34.0
+
+
+def test_the_horizontal_pipe_names_the_source_of_every_number():
+    text = (CASES / "horizontal_pipe.toml").read_text(encoding="utf-8")
+    sources = r"#.*(paper|ours)"
+    unsourced = [
+        line
+        for before, line in zip(text.splitlines(), text.splitlines()[1:], strict=False)
+        if re.match(r"\w+ = .*\d", line)
+        and not line.startswith("title")
+        and not re.search(sources, line)
+        and not before.startswith("#")
+    ]
+    assert unsourced == []
+
+
+def test_dry_solids_and_clear_liquid_are_cases_too():
+    assert load_case(CASES / "dry_collapse.toml").liquid is None
+    assert load_case(CASES / "clear_liquid.toml").solids is None
