@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Tag
@@ -238,6 +237,30 @@ Restitution = Annotated[float, Quantity(above=0.0, at_most=1.0)]
 Friction = Annotated[float, Quantity(at_least=0.0)]
 
 
+class Material(Part):
+    """What a contact law needs to know of a body.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        Young's modulus [Pa].
+    poisson_ratio : float
+        Poisson's ratio [-].
+    restitution : float
+        Rebound speed over impact speed [-].
+    friction : float
+        Coefficient of sliding friction [-].
+    rolling_friction : float
+        Rolling resistance torque over normal force and radius [-].
+    """
+
+    youngs_modulus: YoungsModulus
+    poisson_ratio: PoissonRatio = 0.2
+    restitution: Restitution = 0.9
+    friction: Friction = 0.2
+    rolling_friction: Friction = 0.0
+
+
 class Wall(Part):
     """What differs in a contact with the wall; None where nothing does.
 
@@ -246,7 +269,7 @@ class Wall(Part):
     youngs_modulus : float, optional
         Young's modulus [Pa].
     poisson_ratio, restitution, friction, rolling_friction : float, optional
-        As in `Solids` [-].
+        As in `Material` [-].
     """
 
     youngs_modulus: YoungsModulus | None = None
@@ -256,19 +279,8 @@ class Wall(Part):
     rolling_friction: Friction | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ContactMaterial:
-    """What a contact law needs to know of two bodies: Young's modulus [Pa], the others [-]."""
-
-    youngs_modulus: float
-    poisson_ratio: float
-    restitution: float
-    friction: float
-    rolling_friction: float
-
-
-class Solids(Part):
-    """Spheres of one material.
+class Solids(Material):
+    """Spheres of one material, whose parameters come first.
 
     Parameters
     ----------
@@ -288,16 +300,6 @@ class Solids(Part):
         Push overlapping solids apart at the start, instead of refusing them.
     contact : {"hertz_mindlin", "linear_spring", "hertz_viscoelastic"}
         Contact law.
-    youngs_modulus : float
-        Young's modulus [Pa].
-    poisson_ratio : float
-        Poisson's ratio [-].
-    restitution : float
-        Rebound speed over impact speed [-].
-    friction : float
-        Coefficient of sliding friction [-].
-    rolling_friction : float
-        Rolling resistance torque over normal force and radius [-].
     wall : Wall
         What differs in a contact with the wall.
     normal_stiffness, tangential_stiffness : float, optional
@@ -318,11 +320,6 @@ class Solids(Part):
     seed: Annotated[int, Whole(at_least=0)] = 0
     relax: bool = False
     contact: Literal["hertz_mindlin", "linear_spring", "hertz_viscoelastic"] = "hertz_mindlin"
-    youngs_modulus: YoungsModulus
-    poisson_ratio: PoissonRatio = 0.2
-    restitution: Restitution = 0.9
-    friction: Friction = 0.2
-    rolling_friction: Friction = 0.0
     wall: Wall = Wall()
     normal_stiffness: Annotated[float, Quantity("N/m", above=0.0)] | None = None
     tangential_stiffness: Annotated[float, Quantity("N/m", at_least=0.0)] | None = None
@@ -390,10 +387,10 @@ class Solids(Part):
         return math.pi / 6 * cube
 
     @property
-    def at_wall(self) -> ContactMaterial:
+    def at_wall(self) -> Material:
         """Material of a contact with the wall: that of the solids where `wall` does not differ."""
         of_solids = {name: getattr(self, name) for name in Wall.model_fields}
-        return ContactMaterial(**of_solids | self.wall.model_dump(exclude_none=True))
+        return Material(**of_solids | self.wall.model_dump(exclude_none=True))
 
     @property
     def _bounds(self) -> tuple[float, float]:
