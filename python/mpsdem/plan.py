@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from mpsdem import _core
@@ -14,6 +15,7 @@ from mpsdem._core import coupling, mps
 from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
 from mpsdem.contacts import Impact, effective_modulus, rayleigh_time
 
+FloatArray = NDArray[np.float64]
 DragLaw = coupling.SchillerNaumann | coupling.WenYu | coupling.ErgunWenYu | coupling.DiFelice
 DRAG_LAWS: Mapping[str, type[DragLaw]] = {
     "schiller_naumann": coupling.SchillerNaumann,
@@ -30,7 +32,7 @@ _LARGEST_SHARE = 0.5
 _COLLISION_WORTH = 1 / 3
 _COUPLING_SHARE = 0.1  # [-] of the times over which the forces on a solid change
 _DILUTE = 1e-3  # [-] solid fraction above which the liquid notices the solids
-_SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
+SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 _SERIAL = 5000  # solids up to which threads cost more than they gain
 _SOLID_RATE = 3e7  # solids x steps per second on one thread, dense: 2.4e7 to 1.4e8 were measured
 _SAMPLE_TIME = 1e-6  # [s] liquid, void fraction and drag of one solid, once
@@ -422,11 +424,12 @@ def _limits(
     for scale in times:
         longest = _LARGEST_SHARE * scale.limit
         if given > longest:
+            share = _LARGEST_SHARE * scale.worth
             problem = Problem(
                 field=f"fidelity.{name}",
                 value=given,
                 unit="s",
-                rule=f"must be <= {longest:.4g} s, {_LARGEST_SHARE * scale.worth:.3g} of {scale.name}",
+                rule=f"must be <= {longest:.4g} s, {share:.3g} of {scale.name}",
                 remedy="leave it out, and the plan chooses",
             )
             raise CaseError([problem])
@@ -522,6 +525,12 @@ def pipe_profile(case: Case) -> mps.PipeProfile:
     )
 
 
+def gravity(case: Case) -> FloatArray:
+    """Gravity in the axes of the pipe, (3,) [m/s2]."""
+    rise = case.pipe.inclination
+    return case.gravity * np.array([-math.sin(rise), 0.0, -math.cos(rise)])
+
+
 def clear_gradient(case: Case) -> float:
     """Pressure loss of the liquid alone along the pipe, static head apart [Pa/m]."""
     if case.liquid is None:
@@ -604,7 +613,7 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         pair_stiffness, wall_stiffness = spring_stiffness(case, speed)
         overlap = max(pair.on_spring(pair_stiffness)[0], wall.on_spring(wall_stiffness)[0])
     share = overlap / (solids.largest_diameter / 2)
-    if share > _SOFT:
+    if share > SOFT:
         yield (
             f"a collision at {speed:.3g} m/s overlaps by {share:.0%} of the radius: "
             "raise fidelity.stiffness_factor or solids.youngs_modulus"

@@ -23,6 +23,7 @@ from mpsdem.plan import (
     DragLaw,
     Plan,
     clear_gradient,
+    gravity,
     impacts,
     materials,
     mean_diameter,
@@ -35,7 +36,7 @@ FloatArray = NDArray[np.float64]
 ContactLaw = dem.LinearSpring | dem.HertzMindlin | dem.HertzViscoelastic
 
 
-class SimulationDiverged(RuntimeError):
+class SimulationDiverged(RuntimeError):  # noqa: N818 - what happened, not what is wrong
     """A number of the run is no longer finite, or a solid has left the bore."""
 
     def __init__(self, *, step: int, time: float, field: str, solid: int) -> None:
@@ -102,7 +103,7 @@ class Stage(Protocol):
 
     name: ClassVar[str]
 
-    def __call__(self, state: State, dt: float) -> None: ...
+    def __call__(self, state: State, dt: float, /) -> None: ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,7 +113,7 @@ class SampleLiquid:
     name: ClassVar[str] = "SampleLiquid"
     profile: mps.PipeProfile
 
-    def __call__(self, state: State, dt: float) -> None:
+    def __call__(self, state: State, _dt: float) -> None:
         state.liquid_velocity = self.profile.velocity(state.solids.position)
 
 
@@ -124,7 +125,7 @@ class FindVoidFraction:
     average: coupling.VoidFraction
     threads: int
 
-    def __call__(self, state: State, dt: float) -> None:
+    def __call__(self, state: State, _dt: float) -> None:
         solids = state.solids
         state.void_fraction, clipped = self.average.at_solids(
             position=solids.position, radius=solids.radius, threads=self.threads
@@ -142,7 +143,7 @@ class DragForce:
     liquid_density: float
     kinematic_viscosity: float
 
-    def __call__(self, state: State, dt: float) -> None:
+    def __call__(self, state: State, _dt: float) -> None:
         solids = state.solids
         state.drag_rate = coupling.drag_rate(
             self.law,
@@ -164,6 +165,7 @@ class AdvanceSolids:
     acceleration: FloatArray  # (n, 3), gravity less buoyancy [m/s2]
     substeps: int
     dry: bool
+    pipe_radius: float
 
     def __call__(self, state: State, dt: float) -> None:
         solids = state.solids
@@ -176,6 +178,8 @@ class AdvanceSolids:
                 drag_rate=state.drag_rate,
             )
         report = solids.advance(dt / self.substeps, self.substeps)
+        if not report.finite:
+            check(state, self.pipe_radius)
         state.drag_impulse = state.drag_impulse + solids.drag_impulse.sum(axis=0)
         state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
 
@@ -192,7 +196,7 @@ class Record:
     bulk_velocity: float | None  # [m/s] None without liquid
     clear_gradient: float  # [Pa/m] loss of the liquid alone
 
-    def __call__(self, state: State, dt: float) -> None:
+    def __call__(self, state: State, _dt: float) -> None:
         if state.step % self.steps_per_frame:
             return
         solids: dict[str, FloatArray] = {}
@@ -323,6 +327,7 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     acceleration=np.tile(lightness * gravity(case), (case.solids_count, 1)),
                     substeps=plan.clock.substeps,
                     dry=liquid is None,
+                    pipe_radius=pipe.radius,
                 )
             case "Record", _, liquid:
                 yield Record(
@@ -333,12 +338,6 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     bulk_velocity=liquid.bulk_velocity if liquid else None,
                     clear_gradient=clear_gradient(case),
                 )
-
-
-def gravity(case: Case) -> FloatArray:
-    """Gravity in the axes of the pipe, (3,) [m/s2]."""
-    rise = case.pipe.inclination
-    return case.gravity * np.array([-math.sin(rise), 0.0, -math.cos(rise)])
 
 
 def _contact_laws(case: Case, speed: float) -> tuple[ContactLaw, ContactLaw]:

@@ -1,0 +1,261 @@
+"""The run: a case and its plan in, a directory of results out."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+
+from mpsdem.case import Case, load_case
+from mpsdem.info import provenance
+from mpsdem.plan import Plan, make_plan, pipe_profile
+from mpsdem.results import (
+    CheckpointError,
+    DirectoryLock,
+    OutputError,
+    Results,
+    ResultsWriter,
+    read_checkpoint,
+    write_checkpoint,
+    write_summary,
+)
+from mpsdem.simulation.summary import summarize
+from mpsdem.simulation.watch import (
+    LOG,
+    Due,
+    SimulationInterrupted,
+    Stopwatch,
+    log_file,
+    progress,
+    signals,
+)
+from mpsdem.stages import (
+    AdvanceSolids,
+    SimulationDiverged,
+    Stage,
+    State,
+    build_stages,
+    build_state,
+    check,
+)
+
+_PROFILE_POINTS = 101  # of the liquid's profile in the results
+
+
+class Simulation:
+    """A case that is ready to run.
+
+    Parameters
+    ----------
+    case : Case
+        What to simulate.
+    output : path-like, optional
+        Directory for the results; by default ``out/`` and the title of the case.
+    overwrite : bool
+        Whether results that stand there may be replaced.
+
+    Raises
+    ------
+    CaseError
+        If no plan can be made.
+
+    Examples
+    --------
+    >>> import mpsdem as md
+    >>> case = md.load_case("cases/horizontal_pipe.toml")  # doctest: +SKIP
+    >>> results = md.Simulation(case, output="out/pipe").run()  # doctest: +SKIP
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        output: str | os.PathLike[str] | None = None,
+        *,
+        overwrite: bool = False,
+    ) -> None:
+        self.case = case
+        self.plan = make_plan(case)
+        self.directory = Path("out", _slug(case.title)) if output is None else Path(output)
+        self._overwrite = overwrite
+        self._resumed = False
+
+    @classmethod
+    def resume(cls, directory: str | os.PathLike[str]) -> Simulation:
+        """Go on from the last checkpoint in a directory.
+
+        The results equal, bit by bit, those of a run that was never stopped.
+
+        Parameters
+        ----------
+        directory : path-like
+            Output directory of the run that was stopped.
+
+        Raises
+        ------
+        CaseError
+            If there is no valid case in it.
+        """
+        simulation = cls(load_case(Path(directory) / "case.toml"), directory)
+        simulation._resumed = True
+        return simulation
+
+    def run(self, *, bar: bool = True) -> Results:
+        """Run to the end of the case, and leave results, summary and figures.
+
+        Parameters
+        ----------
+        bar : bool
+            Whether to show a progress bar, on a terminal or in a notebook; else the log tells.
+
+        Returns
+        -------
+        Results
+            What stands in the directory now.
+
+        Raises
+        ------
+        SimulationInterrupted
+            On SIGINT and SIGTERM, with the step finished and a checkpoint written.
+        SimulationDiverged
+            If a number is no longer finite, or a solid left the bore; frames and checkpoint before
+            it are kept.
+        OutputError
+            If the directory is in use, holds other results, or cannot be written.
+        CheckpointError
+            If the run to be resumed has no checkpoint, or one of another case.
+        """
+        with DirectoryLock(self.directory), log_file(self.directory / "run.log"):
+            with signals() as received:
+                time = self._simulate(received, bar=bar)
+            if received:
+                raise SimulationInterrupted(
+                    signal=received[0], time=time, directory=self.directory
+                )
+            results = Results(self.directory)
+            if self.case.output.figures:
+                from mpsdem.plot import save_figures  # half a second, for those who want figures
+
+                save_figures(results, self.directory / "figures", times=self.case.output.times)
+            return results
+
+    def _simulate(self, received: Sequence[int], *, bar: bool) -> float:
+        """Run to the end or to the first signal; return the time that was reached [s]."""
+        clock = self.plan.clock
+        state, writer, stopwatch = self._continue() if self._resumed else self._start()
+        stages = tuple(build_stages(self.case, self.plan, writer))
+        due = Due(self.case.output.checkpoint_every, now=state.time)
+        try:
+            with writer, progress(state.time, clock.end_time, bar=bar) as show:
+                if state.step == 0:
+                    self._begin(stages, state, stopwatch)
+                while state.step < clock.steps and not received:
+                    state.step += 1
+                    state.time = clock.time(state.step)
+                    for stage in stages:
+                        stage(state, clock.length(state.step))
+                    if due(state.time):
+                        self._write_checkpoint(state, stopwatch)
+                    show(state.time)
+                self._write_checkpoint(state, stopwatch)
+        except SimulationDiverged as error:
+            LOG.error("%s", error)
+            self._write_summary("diverged", state, stopwatch)
+            raise
+        self._write_summary("interrupted" if received else "finished", state, stopwatch)
+        return state.time
+
+    def _start(self) -> tuple[State, ResultsWriter, Stopwatch]:
+        if (self.directory / "results.h5").exists() and not self._overwrite:
+            raise OutputError(
+                f"{self.directory} holds results already: choose another directory, go on with "
+                "`mpsdem resume`, or replace them with --overwrite (in Python, overwrite=True)"
+            )
+        stopwatch = Stopwatch()
+        state = build_state(self.case, self.plan)
+        for name in ("results.h5", "checkpoint.h5", "summary.json"):
+            (self.directory / name).unlink(missing_ok=True)
+        _log_plan(self.plan)
+        return state, self._new_writer(state), stopwatch
+
+    def _new_writer(self, state: State) -> ResultsWriter:
+        solids, liquid = {}, {}
+        if self.case.solids is not None:
+            radius = state.solids.radius
+            solids = {"radius": radius, "density": np.full_like(radius, self.case.solids.density)}
+        if self.case.liquid is not None:
+            r = np.linspace(0, self.case.pipe.radius, _PROFILE_POINTS)
+            velocity = pipe_profile(self.case).velocity(np.outer(r, [0.0, 0.0, 1.0]))
+            liquid = {"profile_radius": r, "profile_velocity": velocity[:, 0]}
+        return ResultsWriter(
+            self.directory,
+            case=self.case,
+            provenance=provenance(self.plan.threads),
+            solids=solids,
+            liquid=liquid,
+        )
+
+    def _begin(self, stages: Sequence[Stage], state: State, stopwatch: Stopwatch) -> None:
+        """Record what there is before anything has moved."""
+        for stage in stages:
+            if not isinstance(stage, AdvanceSolids):
+                stage(state, 0.0)
+        self._write_checkpoint(state, stopwatch)
+
+    def _continue(self) -> tuple[State, ResultsWriter, Stopwatch]:
+        path = self.directory / "checkpoint.h5"
+        checkpoint = read_checkpoint(path, self.case)
+        if self.plan.clock.time(checkpoint.step) != checkpoint.time:
+            raise CheckpointError(
+                f"{path} stands at {checkpoint.time:g} s, between the steps that end_time and "
+                "output.every now lead to: give them their former values"
+            )
+        state = build_state(self.case, self.plan)
+        state.step, state.time = checkpoint.step, checkpoint.time
+        if state.population is not None:
+            state.population.restore(checkpoint.state["solids"])
+        for name, value in checkpoint.state["stages"].items():
+            setattr(state, name, value)
+        LOG.info("resumed at %g s", state.time)
+        writer = ResultsWriter.reopen(self.directory, time=state.time)
+        return state, writer, Stopwatch(**checkpoint.state["spent"])
+
+    def _write_checkpoint(self, state: State, stopwatch: Stopwatch) -> None:
+        check(state, self.case.pipe.radius)
+        kept = {f.name for f in fields(State)} - {"population", "step", "time"}
+        write_checkpoint(
+            self.directory / "checkpoint.h5",
+            case_toml=self.case.to_toml(),
+            time=state.time,
+            step=state.step,
+            state={
+                "solids": {} if state.population is None else state.population.state(),
+                "stages": {name: getattr(state, name) for name in kept},
+                "spent": {"wall": stopwatch.wall, "cpu": stopwatch.cpu},
+            },
+        )
+
+    def _write_summary(self, status: str, state: State, stopwatch: Stopwatch) -> None:
+        with Results(self.directory) as results:
+            values, not_applicable = summarize(self.plan, state, results)
+        values |= {"status": status, "wall_seconds": stopwatch.wall, "cpu_seconds": stopwatch.cpu}
+        write_summary(self.directory, values, not_applicable=not_applicable)
+        LOG.info("%s at %g s after %.1f s of wall clock", status, state.time, stopwatch.wall)
+
+
+def _slug(title: str) -> str:
+    """Name of a directory that tells of the title."""
+    return re.sub(r"\W+", "_", title.lower()).strip("_") or "run"
+
+
+def _log_plan(plan: Plan) -> None:
+    for stage in plan.stages:
+        LOG.info("%s: %s", stage.name, stage.reason)
+    for name, step in (("solid", plan.solid_step), ("coupling", plan.coupling_step)):
+        if step is not None:
+            LOG.info("%s step %.4g s, bound by %s", name, step.value, step.binding.name)
+    for warning in plan.warnings:
+        LOG.warning("%s", warning)

@@ -1,0 +1,146 @@
+"""The run in about twenty numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
+from mpsdem.results import Results
+from mpsdem.stages import State
+
+# Share of the solids that lie in the bed, whole [-]; the rest is in motion above it.
+_BED_SHARE = 0.95
+
+
+def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any], dict[str, str]]:
+    """What ``summary.json`` says of the physics of a run.
+
+    Parameters
+    ----------
+    plan : Plan
+        What was run.
+    state : State
+        Where it ended.
+    results : Results
+        Its frames.
+
+    Returns
+    -------
+    values : dict
+        By name. Means are over the frames of the second half of the time.
+    not_applicable : dict
+        Names that mean nothing here, each with the reason.
+    """
+    values: dict[str, Any] = {
+        "time": state.time,
+        "steps": state.step,
+        "solid_steps": state.step * plan.clock.substeps,
+        "liquid_model": None if plan.case.liquid is None else "profile",
+        "solids_count": plan.case.solids_count,
+    }
+    values |= _of_liquid(plan, results) | _of_solids(plan, state, results)
+    values["warnings"] = [*plan.warnings, *_warnings(values)]
+    reasons = {
+        "liquid_count": "the liquid has no particles",
+        "mass_error": "the liquid has no particles",
+        "exchange_error": "a prescribed liquid takes no impulse",
+    }
+    if plan.case.liquid is None:
+        reasons |= dict.fromkeys((*reasons, "liquid_model", *_LIQUID_KEYS), "no liquid")
+    elif plan.case.liquid.bulk_velocity == 0:
+        reasons |= {"delivered_concentration": "the liquid is at rest"}
+    if plan.case.solids is None:
+        reasons |= dict.fromkeys(_SOLIDS_KEYS, "no solids")
+    elif plan.case.gravity == 0:
+        reasons |= {"bed_height": "no gravity"}
+    if values.get("momentum_error", 0.0) is None:
+        reasons |= {"momentum_error": "no wall took an impulse"}
+    return values, reasons
+
+
+_LIQUID_KEYS = (
+    "bulk_velocity",
+    "pressure_gradient",
+    "pressure_gradient_static",
+    "friction_factor",
+    "delivered_concentration",
+)
+_SOLIDS_KEYS = (
+    "solids_mean_velocity",
+    "solids_front_position",
+    "insitu_concentration",
+    "delivered_concentration",
+    "bed_height",
+    "largest_overlap",
+    "momentum_error",
+    "exchange_error",
+)
+
+
+def _warnings(values: dict[str, Any]) -> Iterator[str]:
+    if (overlap := values.get("largest_overlap", 0.0)) > SOFT:
+        yield (
+            f"solids overlapped by {overlap:.0%} of their radius: "
+            "raise fidelity.stiffness_factor or solids.youngs_modulus"
+        )
+    if clipped := values.get("void_fraction_clipped"):
+        yield f"{clipped} void fractions fell below the floor and were raised to it"
+
+
+def _mean(results: Results, name: str) -> float:
+    second_half = results.time >= results.time[-1] / 2
+    return float(results.diagnostics[name][second_half].mean())
+
+
+def _of_liquid(plan: Plan, results: Results) -> dict[str, Any]:
+    case, liquid = plan.case, plan.case.liquid
+    if liquid is None:
+        return {}
+    return {
+        "bulk_velocity": liquid.bulk_velocity,
+        "pressure_gradient": _mean(results, "pressure_gradient"),
+        "pressure_gradient_static": float(-liquid.density * gravity(case)[0]),
+        "friction_factor": pipe_profile(case).friction_factor,
+    }
+
+
+def _of_solids(plan: Plan, state: State, results: Results) -> dict[str, Any]:
+    case, liquid = plan.case, plan.case.liquid
+    if case.solids is None:
+        return {}
+    solids = results.solids
+    radius = solids.radius
+    x, _, z = np.moveaxis(solids.position[-1], -1, 0)
+    mean_velocity = _mean(results, "solids_mean_velocity")
+    concentration = float(4 / 3 * math.pi * (radius**3).sum() / case.pipe.bore_volume)
+    values = {
+        "solids_mean_velocity": mean_velocity,
+        "solids_front_position": float((x + case.pipe.length * solids.laps[-1]).max()),
+        "insitu_concentration": concentration,
+        "bed_height": float(np.quantile(z + radius, _BED_SHARE) + case.pipe.radius),
+        "largest_overlap": float(results.diagnostics["largest_overlap"].max()),
+        "momentum_error": _momentum_error(plan, state, results),
+        "void_fraction_clipped": state.clipped,
+    }
+    if liquid is not None and liquid.bulk_velocity != 0:
+        delivered = concentration * mean_velocity / liquid.bulk_velocity
+        values["delivered_concentration"] = delivered
+    return values
+
+
+def _momentum_error(plan: Plan, state: State, results: Results) -> float | None:
+    """Impulse on the solids that nothing explains, over that of wall friction; None without any."""
+    case, liquid, solids = plan.case, plan.case.liquid, state.solids
+    assert case.solids is not None
+    mass = solids.mass
+    gained = mass @ (solids.velocity - results.solids.velocity[0])
+    lightness = 1 - (liquid.density if liquid else 0.0) / case.solids.density
+    weight = mass.sum() * lightness * gravity(case) * state.time
+    unexplained = gained - weight - state.drag_impulse - solids.wall_impulse
+    friction = clear_gradient(case) * case.pipe.bore_volume * state.time
+    of_walls = abs(friction) + float(np.linalg.norm(solids.wall_impulse))
+    return float(np.linalg.norm(unexplained)) / of_walls if of_walls > 0 else None
