@@ -69,12 +69,12 @@ state=$({ sources | LC_ALL=C sort | xargs -d '\n' sha256sum; env | grep '^SKBUIL
 if [ "$state" != "$(cat .venv/installed 2>/dev/null)" ]; then
     say "compiling and installing mpsdem into .venv (a few minutes the first time)"
     rm -f .venv/installed .venv/installed-*
-    .venv/bin/pip install --quiet .
+    .venv/bin/pip install -qq .
     echo "$state" >.venv/installed
 fi
 for extra; do
     [ ! -e ".venv/installed-$extra" ] || continue
     say "installing the packages for: $extra"
-    .venv/bin/pip install --quiet "mpsdem[$extra]" # mpsdem itself is there: adds what the extra names
+    .venv/bin/pip install -qq "mpsdem[$extra]" # mpsdem itself is there: adds what the extra names
     touch ".venv/installed-$extra"
 done
