@@ -132,9 +132,7 @@ class Simulation:
             with signals() as received:
                 time = self._simulate(received, bar=bar)
             if received:
-                raise SimulationInterrupted(
-                    signal=received[0], time=time, directory=self.directory
-                )
+                raise SimulationInterrupted(signal=received[0], time=time, directory=self.directory)
             results = Results(self.directory)
             if self.case.output.figures:
                 from mpsdem.plot import save_figures  # half a second, for those who want figures

@@ -1,0 +1,5 @@
+"""`python -m mpsdem`: the command line."""
+
+from mpsdem.cli import main
+
+main()

@@ -1,0 +1,267 @@
+"""The command line: `mpsdem run`, `resume`, `explain`, `report`, `validate`, `info`."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from mpsdem.case import Case, CaseError, load_case
+from mpsdem.results import CheckpointError, OutputError, Results, ResultsError
+
+if TYPE_CHECKING:
+    from mpsdem.plan import Plan
+    from mpsdem.simulation import Simulation
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Hydraulic transport of coarse solids in pipes. SI units throughout.",
+)
+
+_out = Console()
+_err = Console(stderr=True)
+
+Level = StrEnum("Level", ["quick", "balanced", "fine"])
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")]
+RunDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="Directory of a run.")]
+Until = Annotated[
+    float | None, typer.Option("--until", metavar="T", help="End time in seconds, for the case's.")
+]
+Fidelity = Annotated[
+    Level | None, typer.Option("--fidelity", help="Level of fidelity, for the case's.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Set a key, such as solids.density=2500."),
+]
+
+
+def main() -> None:
+    """Entry point of the command `mpsdem`."""
+    app(prog_name="mpsdem")
+
+
+@app.command()
+def run(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Directory for the results."),
+    ] = None,
+    until: Until = None,
+    fidelity: Fidelity = None,
+    settings: Settings = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace results that stand there.")
+    ] = False,
+) -> None:
+    """Run a case and draw its figures."""
+    with _plain_errors():
+        from mpsdem.simulation import Simulation
+
+        case = _case(case_file, until, fidelity, settings)
+        output = output or (None if case.title else Path("out", case_file.stem))
+        _finish(Simulation(case, output, overwrite=overwrite))
+
+
+@app.command()
+def resume(directory: RunDirectory) -> None:
+    """Go on with a run that was stopped, as if it had never been."""
+    with _plain_errors():
+        from mpsdem.simulation import Simulation
+
+        _finish(Simulation.resume(directory))
+
+
+@app.command()
+def explain(
+    case_file: CaseFile,
+    until: Until = None,
+    fidelity: Fidelity = None,
+    settings: Settings = None,
+) -> None:
+    """Say what a case requires and why, what limits its steps, and what it will cost."""
+    with _plain_errors():
+        from mpsdem.plan import make_plan
+
+        _show_plan(make_plan(_case(case_file, until, fidelity, settings)))
+
+
+@app.command()
+def report(directory: RunDirectory) -> None:
+    """Draw the figures of a run again."""
+    with _plain_errors():
+        from mpsdem.plot import save_figures
+
+        with Results(directory) as results:
+            figures = save_figures(results, directory / "figures", times=results.case.output.times)
+        for figure in figures:
+            _out.print(str(figure), soft_wrap=True, markup=False, highlight=False)
+
+
+@app.command()
+def validate(
+    ids: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Checks; all by default.")
+    ] = None,
+) -> None:
+    """Compare with exact solutions and published numbers."""
+    from mpsdem import validation
+
+    raise typer.Exit(validation.run(ids or []))
+
+
+@app.command()
+def info() -> None:
+    """Say which program this is, and what it found on this machine."""
+    from mpsdem.info import environment
+
+    table = _table()
+    for name, value in environment().items():
+        table.add_row(name, escape(str(value)))
+    _out.print(table)
+
+
+@contextmanager
+def _plain_errors() -> Iterator[None]:
+    """Say in one message what went wrong; exit with 2 for bad input, 1 for a run that failed."""
+    from mpsdem.simulation import SimulationDiverged, SimulationInterrupted
+
+    try:
+        yield
+    except SimulationInterrupted as stop:
+        _err.print(str(stop), soft_wrap=True, markup=False, highlight=False)
+        raise typer.Exit(128 + stop.signal) from None
+    except SimulationDiverged as error:
+        _complain(error)
+        raise typer.Exit(1) from None
+    except (CaseError, CheckpointError, OutputError, ResultsError) as error:
+        _complain(error)
+        raise typer.Exit(2) from None
+
+
+def _complain(error: Exception) -> None:
+    _err.print("[bold red]error:[/]", end=" ")
+    _err.print(str(error), soft_wrap=True, markup=False, highlight=False)
+
+
+def _case(
+    case_file: Path, until: float | None, fidelity: Level | None, settings: list[str] | None
+) -> Case:
+    case = load_case(case_file)
+    if fidelity is not None:
+        case = case.with_(fidelity={"level": fidelity.value})
+    if until is not None:
+        times = tuple(time for time in case.output.times or () if time <= until) or None
+        case = case.with_(end_time=until, output={"times": times})
+    return case.with_settings(settings or [])
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=None, show_header=bool(headings), pad_edge=False, header_style="dim")
+    for heading in headings or ("", ""):
+        table.add_column(heading)
+    return table
+
+
+def _finish(simulation: Simulation) -> None:
+    """Run, and say where what was found."""
+    if not _err.is_terminal:
+        handler = logging.StreamHandler(sys.stderr)
+        handler.addFilter(lambda record: record.levelno < logging.ERROR)  # told by _complain
+        logging.getLogger("mpsdem").addHandler(handler)
+    results = simulation.run()
+    summary = results.summary
+    table = _table()
+    for name, unit in _SHOWN.items():
+        if (value := summary[name]) is not None:
+            table.add_row(name, f"{value:.4g} {unit}" if isinstance(value, float) else str(value))
+    _out.print(table)
+    for warning in summary["warnings"]:
+        _warn(warning)
+    _out.print(f"results in {results.directory}", soft_wrap=True, markup=False, highlight=False)
+    if simulation.case.output.figures:
+        figures = results.directory / "figures"
+        _out.print(f"figures in {figures}", soft_wrap=True, markup=False, highlight=False)
+
+
+_SHOWN = {
+    "status": "",
+    "time": "s",
+    "wall_seconds": "s",
+    "pressure_gradient": "Pa/m",
+    "solids_mean_velocity": "m/s",
+    "solids_front_position": "m",
+    "bed_height": "m",
+    "largest_overlap": "of the radius",
+}
+
+
+def _show_plan(plan: Plan) -> None:
+    _heading(plan.case.title or "Case")
+    table = _table("number", "", "meaning")
+    for number in plan.numbers:
+        table.add_row(number.name, f"{number.value:.4g} {number.unit}", number.meaning)
+    _out.print(table)
+
+    _heading("Each step")
+    table = _table("stage", "why")
+    for stage in plan.stages:
+        table.add_row(stage.name, stage.reason)
+    for stage in plan.left_out:
+        table.add_row(f"[dim]without {escape(stage.name)}[/]", f"[dim]{escape(stage.reason)}[/]")
+    _out.print(table)
+
+    _heading("Steps")
+    table = _table("step", "s", "limit")
+    for name, step in (("solids", plan.solid_step), ("coupling", plan.coupling_step)):
+        if step is None:
+            continue
+        table.add_row(name, f"{step.value:.4g}", "")
+        for limit in step.limits:
+            mark = " [bold](binds)[/]" if limit == step.binding else ""
+            table.add_row("", f"[dim]{limit.value:.4g}[/]", escape(limit.name) + mark)
+    _out.print(table)
+
+    _heading("Cost")
+    clock, estimate = plan.clock, plan.estimate
+    table = _table()
+    steps = f"{clock.steps} coupling steps"
+    if clock.substeps:
+        steps += f" of {clock.substeps} solid steps, {plan.case.solids_count} solids"
+    table.add_row("steps", steps)
+    threads = f"{plan.threads} thread" + ("s" if plan.threads > 1 else "")
+    table.add_row("time", f"about {_duration(estimate.wall_seconds)} on {threads}")
+    table.add_row("memory", f"about {estimate.memory_bytes / 1e6:.0f} MB")
+    table.add_row("disk", f"about {max(1.0, estimate.disk_bytes / 1e6):.0f} MB")
+    _out.print(table)
+    for warning in plan.warnings:
+        _warn(warning)
+
+
+def _heading(text: str) -> None:
+    _out.print(f"\n[bold]{escape(text)}[/]")
+
+
+def _warn(text: str) -> None:
+    _out.print(f"[yellow]warning:[/] {escape(text)}", highlight=False)
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 100:
+        return f"{max(1.0, seconds):.0f} s"
+    if seconds < 6000:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds / 3600:.1f} h"
