@@ -67,37 +67,36 @@ std::size_t VoidFraction::at_solids(std::span<const Vec3> position, std::span<co
             "VoidFraction: radius must be > 0 m and at most a third of smoothing_radius: a sphere "
             "that fills the kernel has no surroundings; raise smoothing_radius");
 
-    const std::size_t n = position.size();
-    std::vector<Real> x(n), y(n), z(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        x[i] = position[i].x - period_ * std::floor(position[i].x / period_);
-        if (x[i] >= period_) x[i] = 0;
-        y[i] = position[i].y;
-        z[i] = position[i].z;
-    }
-    neighbors::CellGrid grid(kernel_.radius, period_);
-    std::vector<Index> order;
-    if (n == 0 || !grid.sort(x.data(), y.data(), z.data(), n, order)) {
+    const bool finite = std::ranges::all_of(position, [](Vec3 x) {
+        return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
+    });
+    if (position.empty() || !finite) {
         // A diverged run is found and named by the check of the fields, not here.
         std::ranges::fill(void_fraction, Real{1});
         return 0;
     }
 
-    parallel_for(n, threads, [&](std::size_t k) {
+    std::vector<Vec3> center(position.begin(), position.end());
+    for (Vec3& x : center) {
+        x.x -= period_ * std::floor(x.x / period_);
+        if (x.x >= period_) x.x = 0; // rounded up from just below zero
+    }
+    neighbors::CellGrid grid(kernel_.radius, period_);
+    std::vector<Index> order;
+    grid.sort(center, order);
+
+    parallel_for(order.size(), threads, [&](std::size_t k) {
         const Index i = order[k];
         Real weighted = 0; // [m3]
         grid.around(grid.cell(k), [&](Index first, Index last, int image) {
+            const Vec3 seen_from = center[i] + Vec3{image * period_, 0, 0};
             for (Index m = first; m < last; ++m) {
                 const Index j = order[m];
-                const Real dx = x[i] - x[j] + image * period_;
-                const Real r2 =
-                    dx * dx + (y[i] - y[j]) * (y[i] - y[j]) + (z[i] - z[j]) * (z[i] - z[j]);
-                if (r2 < kernel_.radius * kernel_.radius) {
-                    weighted += kernel_(std::sqrt(r2)) * sphere_volume(radius[j]);
-                }
+                weighted += kernel_(norm(seen_from - center[j])) * sphere_volume(radius[j]);
             }
         });
-        const Real in_bore = kernel_.integral() * share_in_bore(std::hypot(y[i], z[i]));
+        const Real in_bore =
+            kernel_.integral() * share_in_bore(std::hypot(center[i].y, center[i].z));
         const Real all = weighted / in_bore;
         const Real own = sphere_volume(radius[i]) / in_bore;
         void_fraction[i] = all < dense_fraction
