@@ -3,7 +3,8 @@
 from mpsdem.results.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from mpsdem.results.errors import CheckpointError, LockError, OutputError, ResultsError
 from mpsdem.results.lock import DirectoryLock
-from mpsdem.results.reader import Field, Results
+from mpsdem.results.reader import Results
+from mpsdem.results.stored import Field
 from mpsdem.results.summary import SUMMARY_KEYS, write_summary
 from mpsdem.results.writer import ResultsWriter
 

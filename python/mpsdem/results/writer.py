@@ -26,7 +26,7 @@ from mpsdem.results.files import (
     write_atomically,
     writing,
 )
-from mpsdem.results.reader import FORMAT, FORMAT_VERSION, open_results
+from mpsdem.results.stored import FORMAT, FORMAT_VERSION, open_results
 
 _CHUNK = 1 << 16  # [bytes] far below HDF5's chunk cache, so that a chunk is filled in memory
 _SLACK = 1 << 18  # [bytes] for the file's own bookkeeping between two reservations
@@ -62,12 +62,12 @@ class ResultsWriter:
 
     Notes
     -----
-    The file is written in HDF5's single-writer-multiple-reader mode: each frame is flushed in an
-    order that never leaves a reference to something unwritten, and `/time` is flushed last, so a
-    frame counts only once it is whole. Other programs may read while the run goes on
-    (``h5py.File(path, swmr=True, locking=False)``). The space of a frame is reserved before HDF5
-    hears of it, as HDF5 does not survive a full disk. Nothing is compressed: the digits of
-    coordinates are noise to a compressor.
+    The file is written in HDF5's single-writer-multiple-reader mode: what is flushed never refers
+    to something unwritten, and `/time` is flushed after all else, so a frame counts only once it
+    is whole. `Results` reads the file at any moment, and also after a kill; other programs open a
+    file that was not closed with ``h5py.File(path, swmr=True, locking=False)``. The space of a
+    frame is reserved before HDF5 hears of it, as HDF5 does not survive a full disk. Nothing is
+    compressed: the digits of coordinates are noise to a compressor.
     """
 
     def __init__(
@@ -146,7 +146,7 @@ class ResultsWriter:
                     draft.unlink()
                 raise
             except (OSError, RuntimeError, KeyError) as error:
-                raise ResultsError(f"{old.filename} is damaged: {error}") from error
+                raise ResultsError(f"{writer._path} is damaged: {error}") from error
         if case is not None:
             write_atomically(writer._path.with_name(CASE), case.to_toml().encode())
         return writer
@@ -179,20 +179,20 @@ class ResultsWriter:
         OutputError
             If the disk is full or the file cannot be written; the frames before are kept.
         """
-        frame = _by_path(solids=solids, diagnostics=diagnostics) | {"time": np.float64(time)}
+        frame = _by_path(solids=solids, diagnostics=diagnostics)
         if not time > self._last_time:
             raise ValueError(f"a frame at {time!r} s cannot follow one at {self._last_time!r} s")
         try:
             if self._file is None:
                 self._create(frame)
-            elif changed := frame.keys() ^ self._series.keys():
+            elif changed := (frame.keys() | {"time"}) ^ self._series.keys():
                 raise ValueError(f"all frames hold the same fields; not so {sorted(changed)}")
             self._reserve(sum(map(_chunk_bytes, self._series.values())))
-            for path, value in frame.items():  # time comes last
-                dataset = self._series[path]
-                dataset.resize(self._frames + 1, axis=0)
-                dataset[self._frames] = value
-                dataset.flush()
+            for path, value in frame.items():
+                self._write(path, value)
+            self._flush()
+            self._write("time", time)
+            self._flush()
         except OutputError:
             raise
         except (OSError, RuntimeError) as error:
@@ -235,6 +235,7 @@ class ResultsWriter:
                 _describe(file[path])
             for path, value in frame.items():
                 _create_series(file, path, value.shape, value.dtype)
+            _create_series(file, "time", (), np.dtype(TIME.dtype))
         self._open()
         self._publish()
 
@@ -245,7 +246,17 @@ class ResultsWriter:
     def _publish(self) -> None:
         assert self._file is not None
         self._file.swmr_mode = True
+        self._flush()
         self._draft.replace(self._path)
+
+    def _write(self, path: str, value: ArrayLike) -> None:
+        dataset = self._series[path]
+        dataset.resize(self._frames + 1, axis=0)
+        dataset[self._frames] = value
+
+    def _flush(self) -> None:
+        assert self._file is not None
+        self._file.flush()
 
     def _reserve(self, size: int) -> None:
         assert self._file is not None
@@ -289,7 +300,7 @@ def _create_series(
         path,
         shape=(0, *shape),
         maxshape=(None, *shape),
-        chunks=(max(1, min(1024, _CHUNK // frame_bytes)), *shape),
+        chunks=(max(1, _CHUNK // frame_bytes), *shape),
         dtype=dtype,
     )
     _describe(dataset)
