@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 scripts/setup.sh
-.venv/bin/mpsdem run cases/horizontal_pipe.toml --fidelity quick -o out/horizontal_pipe
-printf '\nFigures: %s\n' "$PWD"/out/horizontal_pipe/figures/*
+.venv/bin/mpsdem run cases/horizontal_pipe.toml --fidelity quick -o out/horizontal_pipe --overwrite
+echo "Figures:" "$PWD"/out/horizontal_pipe/figures/*

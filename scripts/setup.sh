@@ -7,28 +7,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 say() { printf 'setup: %s\n' "$*" >&2; }
 
-# Install system packages where we may; else say what is missing, and stop.
-install() {
-    local reason=$1 apt=()
-    shift
-    if command -v apt-get >/dev/null; then
-        if [ "$(id -u)" = 0 ]; then
-            apt=(apt-get)
-        elif sudo -n true 2>/dev/null; then
-            apt=(sudo -n apt-get)
-        fi
-    fi
-    if [ ${#apt[@]} = 0 ]; then
-        say "$reason."
-        say "It cannot be installed from here: that needs apt-get as root, or sudo without a password."
-        say "Install it (on Debian and Ubuntu: sudo apt-get install $*) and run this again."
-        exit 1
-    fi
-    say "$reason: installing $* ..."
-    "${apt[@]}" update -qq
-    "${apt[@]}" install -y -qq --no-install-recommends "$@" >/dev/null
-}
-
 find_python() {
     local candidate
     for candidate in python3 python3.14 python3.13 python3.12 python3.11; do
@@ -40,26 +18,55 @@ find_python() {
     return 1
 }
 
-python_makes_environments() { "$python" -c 'import ensurepip, venv' 2>/dev/null; }
-
-python_has_headers() {
-    "$python" -c 'import pathlib, sys, sysconfig
-sys.exit(not pathlib.Path(sysconfig.get_path("include"), "Python.h").exists())'
+# Say what the machine lacks, one "Debian package: what it is for" a line.
+missing() {
+    local package
+    if find_python; then
+        package=$(basename "$("$python" -c 'import os, sys; print(os.path.realpath(sys.executable))')")
+        "$python" -c 'import ensurepip, venv' 2>/dev/null || echo "$package-venv: virtual environments"
+        "$python" -c 'import os, sys, sysconfig
+sys.exit(not os.path.exists(sysconfig.get_path("include") + "/Python.h"))' ||
+            echo "$package-dev: the headers of $python"
+    else
+        printf '%s\n' "python3: Python 3.11 or newer" "python3-venv: virtual environments" "python3-dev: its headers"
+    fi
+    echo '#include <concepts>' | "${CXX:-c++}" -std=c++20 -fopenmp -fsyntax-only -x c++ - 2>/dev/null ||
+        echo "g++: a C++20 compiler with OpenMP"
 }
 
-compiler_works() {
-    echo '#include <concepts>' | "${CXX:-c++}" -std=c++20 -fopenmp -fsyntax-only -x c++ - 2>/dev/null
+# Install the system packages of `missing` where we may.
+install_missing() {
+    local packages apt=()
+    mapfile -t packages < <(missing | sed 's/:.*//')
+    if [ ${#packages[@]} = 0 ]; then return; fi
+    say "this machine lacks:"
+    missing | sed 's/^/setup:   /' >&2
+    if ! command -v apt-get >/dev/null; then
+        say "install that with the package manager of your system (the names are Debian's), then run this again."
+        exit 1
+    elif [ "$(id -u)" = 0 ]; then
+        apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq)
+    elif sudo -n true 2>/dev/null; then
+        apt=(sudo -n DEBIAN_FRONTEND=noninteractive apt-get -qq)
+    else
+        say "installing needs root, or sudo without a password. Run this, then try again:"
+        say "  sudo apt-get install ${packages[*]}"
+        exit 1
+    fi
+    say "installing ${packages[*]}"
+    "${apt[@]}" update
+    "${apt[@]}" install -y --no-install-recommends "${packages[@]}" >/dev/null
+    if [ -n "$(missing)" ]; then
+        say "still missing after installing:"
+        missing | sed 's/^/setup:   /' >&2
+        exit 1
+    fi
 }
 
-find_python || install "Python 3.11 or newer is missing" python3
-find_python || { say "the system's Python is older than 3.11: install a newer one"; exit 1; }
-debian=$(basename "$(readlink -f "$(command -v "$python")")") # python3.11: also its packages' stem
-python_makes_environments || install "$python cannot make virtual environments" "$debian-venv"
-python_has_headers || install "the headers of $python are missing" "$debian-dev"
-compiler_works || install "a C++20 compiler with OpenMP is missing" g++
-
+install_missing
+find_python
 if [ ! -x .venv/bin/pip ]; then
-    say "making the virtual environment .venv"
+    say "making the virtual environment .venv with $("$python" --version)"
     "$python" -m venv --clear .venv
 fi
 export PIP_DISABLE_PIP_VERSION_CHECK=1
@@ -67,14 +74,15 @@ export PIP_DISABLE_PIP_VERSION_CHECK=1
 sources() { find CMakeLists.txt pyproject.toml cmake cpp python -type f ! -name '*.py[co]' ! -name '*.so'; }
 state=$({ sources | LC_ALL=C sort | xargs -d '\n' sha256sum; env | grep '^SKBUILD_' || true; } | sha256sum)
 if [ "$state" != "$(cat .venv/installed 2>/dev/null)" ]; then
-    say "compiling and installing mpsdem into .venv (a few minutes the first time)"
+    say "compiling mpsdem and installing it into .venv: a few minutes"
     rm -f .venv/installed .venv/installed-*
     .venv/bin/pip install -qq .
     echo "$state" >.venv/installed
 fi
 for extra; do
-    [ ! -e ".venv/installed-$extra" ] || continue
-    say "installing the packages for: $extra"
-    .venv/bin/pip install -qq "mpsdem[$extra]" # mpsdem itself is there: adds what the extra names
-    touch ".venv/installed-$extra"
+    if [ ! -e ".venv/installed-$extra" ]; then
+        say "installing the packages for: $extra"
+        .venv/bin/pip install -qq "mpsdem[$extra]" # mpsdem itself is there: adds what the extra names
+        touch ".venv/installed-$extra"
+    fi
 done
