@@ -18,8 +18,11 @@ def write_stubs(folder: Path) -> None:
     generate = [sys.executable, "-m", "pybind11_stubgen", "mpsdem._core", "--exit-code"]
     subprocess.run([*generate, "-o", str(folder)], check=True)
     for stub in (folder / "mpsdem" / "_core").glob("*.pyi"):
+        text = stub.read_text("utf-8")
         # A string constant tells of the machine that built the module (compiler, SIMD level).
-        stub.write_text(re.sub(r"(?m)^(\w+: str) = .*$", r"\1", stub.read_text("utf-8")), "utf-8")
+        text = re.sub(r"(?m)^(\w+: str) = .*$", r"\1", text)
+        text = re.sub(r"(-> |: )dict(?=[:,)])", r"\1dict[str, typing.Any]", text)
+        stub.write_text(text, "utf-8")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,238 @@
+"""
+What liquid and solids do to each other. SI units throughout.
+"""
+from __future__ import annotations
+import numpy
+import numpy.typing
+import typing
+__all__: list[str] = ['DiFelice', 'ErgunWenYu', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate', 'void_fraction_at_solids']
+class SchillerNaumann:
+    """
+    Drag of an isolated sphere.
+    
+    The force depends on the slip alone; neighbors change nothing. Reynolds numbers up to 2e5.
+    
+    References
+    ----------
+    Schiller & Naumann (1933), Z. Ver. Dtsch. Ing. 77, 318-320.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def covers(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Whether the law's sources stand behind it there.
+        """
+    def force_ratio(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        Drag over Stokes's drag on the superficial slip, in Model A.
+        
+        Parameters
+        ----------
+        reynolds : float
+            Void fraction x slip x diameter / kinematic viscosity [-], >= 0.
+        void_fraction : float
+            Share of liquid around the sphere [-], in (0, 1].
+        
+        Returns
+        -------
+        float
+            Force / (3 pi x dynamic viscosity x diameter x void fraction x slip) [-].
+        """
+class WenYu:
+    """
+    Drag of a sphere in a fluidised suspension.
+    
+    Void fractions from 0.45 to 1, Reynolds numbers up to 2e5.
+    
+    References
+    ----------
+    Wen & Yu (1966), Chem. Eng. Prog. Symp. Ser. 62, 100-111.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def covers(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Whether the law's sources stand behind it there.
+        """
+    def force_ratio(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        Drag over Stokes's drag on the superficial slip, in Model A.
+        
+        Parameters
+        ----------
+        reynolds : float
+            Void fraction x slip x diameter / kinematic viscosity [-], >= 0.
+        void_fraction : float
+            Share of liquid around the sphere [-], in (0, 1].
+        
+        Returns
+        -------
+        float
+            Force / (3 pi x dynamic viscosity x diameter x void fraction x slip) [-].
+        """
+class ErgunWenYu:
+    """
+    Ergun's packed bed up to a void fraction of 0.8, Wen & Yu above.
+    
+    The drag jumps at the switch, by a factor of 3.7 at a Reynolds number of 1000.
+    
+    References
+    ----------
+    Ergun (1952), Chem. Eng. Prog. 48, 89-94; Ding & Gidaspow (1990), doi:10.1002/aic.690360404.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def covers(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Whether the law's sources stand behind it there.
+        """
+    def force_ratio(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        Drag over Stokes's drag on the superficial slip, in Model A.
+        
+        Parameters
+        ----------
+        reynolds : float
+            Void fraction x slip x diameter / kinematic viscosity [-], >= 0.
+        void_fraction : float
+            Share of liquid around the sphere [-], in (0, 1].
+        
+        Returns
+        -------
+        float
+            Force / (3 pi x dynamic viscosity x diameter x void fraction x slip) [-].
+        """
+class DiFelice:
+    """
+    One smooth law from a packed bed to a lone sphere.
+    
+    Void fractions from 0.4 to 1, Reynolds numbers 0.01 to 1e4.
+    
+    References
+    ----------
+    Di Felice (1994), doi:10.1016/0301-9322(94)90011-6.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def covers(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Whether the law's sources stand behind it there.
+        """
+    def force_ratio(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        Drag over Stokes's drag on the superficial slip, in Model A.
+        
+        Parameters
+        ----------
+        reynolds : float
+            Void fraction x slip x diameter / kinematic viscosity [-], >= 0.
+        void_fraction : float
+            Share of liquid around the sphere [-], in (0, 1].
+        
+        Returns
+        -------
+        float
+            Force / (3 pi x dynamic viscosity x diameter x void fraction x slip) [-].
+        """
+class VoidFraction:
+    """
+    Void fraction that each solid sees in a straight pipe.
+    
+    Neighbors count by the kernel ``4 q^5 - 5 q^4 + 1``, ``q = r / smoothing_radius``, normalised by the
+    part of it inside the bore. A lone sphere sees 1, a dense bed its full solid fraction.
+    
+    Parameters
+    ----------
+    pipe_radius : float
+        Of the bore about the x axis [m].
+    period : float
+        Of the pipe along x [m].
+    smoothing_radius : float
+        [m]; 2.5 diameters is a good choice, 1.5 the least.
+    """
+    def __init__(self, *, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, period: typing.SupportsFloat | typing.SupportsIndex, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def at_solids(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> tuple[numpy.typing.NDArray[numpy.float64], int]:
+        """
+        Void fraction at each solid.
+        
+        Parameters
+        ----------
+        position : (n, 3) float64 ndarray
+            [m]
+        radius : (n,) float64 ndarray
+            [m]
+        threads : int
+            The result does not depend on it.
+        
+        Returns
+        -------
+        void_fraction : (n,) float64 ndarray
+            [-], in [0.3, 1].
+        clipped : int
+            How many were below 0.3 and raised to it.
+        """
+def count_outside(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> int:
+    """
+    How many solids lie outside what the drag law's sources stand for.
+    
+    Parameters
+    ----------
+    law : SchillerNaumann, WenYu, ErgunWenYu or DiFelice
+    liquid_velocity, velocity : (n, 3) float64 ndarray
+        At each solid, and its own [m/s].
+    void_fraction : (n,) float64 ndarray
+        At each solid [-], in (0, 1].
+    diameter : (n,) float64 ndarray
+        [m]
+    kinematic_viscosity : float
+        Of the liquid [m2/s].
+    
+    Returns
+    -------
+    int
+        Number of solids for which ``law.covers`` is false.
+    """
+def drag_rate(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Drag of each solid over its mass and slip, in Model B.
+    
+    The drag's acceleration is ``rate * (liquid_velocity - velocity)``. In Model B the liquid carries
+    the whole pressure gradient, the drag is that of Model A over the void fraction, and the buoyancy
+    is that of the liquid's density.
+    
+    Parameters
+    ----------
+    law : SchillerNaumann, WenYu, ErgunWenYu or DiFelice
+    liquid_velocity, velocity : (n, 3) float64 ndarray
+        At each solid, and its own [m/s].
+    void_fraction : (n,) float64 ndarray
+        At each solid [-], in (0, 1].
+    diameter, density : (n,) float64 ndarray
+        Of each solid [m], [kg/m3].
+    liquid_density : float
+        [kg/m3]
+    kinematic_viscosity : float
+        Of the liquid [m2/s].
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        Rate [1/s].
+    
+    References
+    ----------
+    Zhou, Kuang, Chu & Yu (2010), doi:10.1017/S002211201000306X.
+    """
+def void_fraction_at_solids(*, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pipe_radius: typing.SupportsFloat | typing.SupportsIndex, period: typing.SupportsFloat | typing.SupportsIndex, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], int]:
+    """
+    `VoidFraction.at_solids` once. A run keeps the `VoidFraction`, which is costly to set up.
+    """

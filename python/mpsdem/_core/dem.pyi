@@ -1,0 +1,240 @@
+"""
+Discrete element method: contact laws and the solids. SI units throughout.
+"""
+from __future__ import annotations
+import collections.abc
+import mpsdem._core.geometry
+import numpy
+import numpy.typing
+import typing
+__all__: list[str] = ['AdvanceReport', 'HertzMindlin', 'HertzViscoelastic', 'LinearSpring', 'Solids', 'damping_factor']
+class LinearSpring:
+    """
+    Linear spring-dashpot with friction.
+    """
+    @staticmethod
+    def with_restitution(*, normal_stiffness: typing.SupportsFloat | typing.SupportsIndex, tangential_stiffness: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex) -> LinearSpring:
+        """
+        Damping chosen for each pair so that an impact returns `restitution`.
+        """
+    def __init__(self, *, normal_stiffness: typing.SupportsFloat | typing.SupportsIndex, tangential_stiffness: typing.SupportsFloat | typing.SupportsIndex, normal_damping: typing.SupportsFloat | typing.SupportsIndex, tangential_damping: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def contact_force(self, *, normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], relative_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], overlap: typing.SupportsFloat | typing.SupportsIndex, reduced_radius: typing.SupportsFloat | typing.SupportsIndex, reduced_mass: typing.SupportsFloat | typing.SupportsIndex, spring: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], dt: typing.SupportsFloat | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Force of one contact on body i.
+        
+        Parameters
+        ----------
+        normal : (3,) float64 ndarray
+            Unit vector from body j to body i.
+        relative_velocity : (3,) float64 ndarray
+            v_i - v_j at the contact point, spin included [m/s].
+        overlap, reduced_radius : float
+            [m].
+        reduced_mass : float
+            [kg].
+        spring : (3,) float64 ndarray
+            Tangential displacement before the step [m].
+        dt : float
+            Step [s].
+        
+        Returns
+        -------
+        normal, tangential : (3,) float64 ndarray
+            Force on body i [N].
+        spring : (3,) float64 ndarray
+            Tangential displacement after the step [m].
+        """
+class HertzMindlin:
+    """
+    Hertz normal and Mindlin tangential force.
+    """
+    def __init__(self, *, youngs_modulus: typing.SupportsFloat | typing.SupportsIndex, poisson_ratio: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def contact_force(self, *, normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], relative_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], overlap: typing.SupportsFloat | typing.SupportsIndex, reduced_radius: typing.SupportsFloat | typing.SupportsIndex, reduced_mass: typing.SupportsFloat | typing.SupportsIndex, spring: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], dt: typing.SupportsFloat | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Force of one contact on body i.
+        
+        Parameters
+        ----------
+        normal : (3,) float64 ndarray
+            Unit vector from body j to body i.
+        relative_velocity : (3,) float64 ndarray
+            v_i - v_j at the contact point, spin included [m/s].
+        overlap, reduced_radius : float
+            [m].
+        reduced_mass : float
+            [kg].
+        spring : (3,) float64 ndarray
+            Tangential displacement before the step [m].
+        dt : float
+            Step [s].
+        
+        Returns
+        -------
+        normal, tangential : (3,) float64 ndarray
+            Force on body i [N].
+        spring : (3,) float64 ndarray
+            Tangential displacement after the step [m].
+        """
+class HertzViscoelastic:
+    """
+    Hertz contact of viscoelastic bodies, for comparing codes.
+    """
+    def __init__(self, *, normal_stiffness: typing.SupportsFloat | typing.SupportsIndex, tangential_stiffness: typing.SupportsFloat | typing.SupportsIndex, normal_damping: typing.SupportsFloat | typing.SupportsIndex, tangential_damping: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def contact_force(self, *, normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], relative_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], overlap: typing.SupportsFloat | typing.SupportsIndex, reduced_radius: typing.SupportsFloat | typing.SupportsIndex, reduced_mass: typing.SupportsFloat | typing.SupportsIndex, spring: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], dt: typing.SupportsFloat | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Force of one contact on body i.
+        
+        Parameters
+        ----------
+        normal : (3,) float64 ndarray
+            Unit vector from body j to body i.
+        relative_velocity : (3,) float64 ndarray
+            v_i - v_j at the contact point, spin included [m/s].
+        overlap, reduced_radius : float
+            [m].
+        reduced_mass : float
+            [kg].
+        spring : (3,) float64 ndarray
+            Tangential displacement before the step [m].
+        dt : float
+            Step [s].
+        
+        Returns
+        -------
+        normal, tangential : (3,) float64 ndarray
+            Force on body i [N].
+        spring : (3,) float64 ndarray
+            Tangential displacement after the step [m].
+        """
+class AdvanceReport:
+    """
+    What a call of Solids.advance met.
+    """
+    @property
+    def finite(self) -> bool:
+        """
+        False when positions or velocities overflowed: the state is lost.
+        """
+    @property
+    def largest_overlap(self) -> float:
+        """
+        Largest overlap over the smaller radius [-].
+        """
+    @property
+    def prunes(self) -> int:
+        ...
+    @property
+    def sorts(self) -> int:
+        ...
+class Solids:
+    """
+    Spheres that touch each other and walls.
+    
+    Parameters
+    ----------
+    position, velocity, spin : (n, 3) float64 ndarray
+        [m], [m/s], [rad/s].
+    radius, density : (n,) float64 ndarray
+        [m], [kg/m3].
+    pair_law, wall_law : LinearSpring, HertzMindlin or HertzViscoelastic
+        Contact law between solids and at walls.
+    pair_rolling_friction, wall_rolling_friction : float
+        [-].
+    walls : list of Plane or Cylinder
+    period : float
+        Length of the periodic x axis [m]; 0 for none.
+    threads : int
+        The results do not depend on it.
+    """
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pair_law: LinearSpring | HertzMindlin | HertzViscoelastic, wall_law: LinearSpring | HertzMindlin | HertzViscoelastic, pair_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, wall_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, walls: collections.abc.Sequence[mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder] = [], period: typing.SupportsFloat | typing.SupportsIndex = 0.0, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        ...
+    def __len__(self) -> int:
+        ...
+    def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex, steps: typing.SupportsInt | typing.SupportsIndex) -> AdvanceReport:
+        """
+        Take `steps` steps of velocity Verlet of `dt` [s].
+        """
+    def contacts(self) -> dict[str, typing.Any]:
+        """
+        What touches now: first, second (-1 - w for wall w), overlap [m], normal, force [N].
+        """
+    def restore(self, state: dict[str, typing.Any]) -> None:
+        """
+        Continue bit-equal from a `state` of the same population.
+        """
+    def set_forcing(self, *, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, drag_rate: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None) -> None:
+        """
+        From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v).
+        
+        Drag is implicit in v. Starts the sums of `drag_impulse` anew.
+        
+        Parameters
+        ----------
+        acceleration : (n, 3) float64 ndarray
+            [m/s2].
+        liquid_velocity : (n, 3) float64 ndarray, optional
+            [m/s]; together with `drag_rate`.
+        drag_rate : (n,) float64 ndarray, optional
+            [1/s].
+        """
+    def state(self) -> dict[str, typing.Any]:
+        """
+        The exact state as arrays of private layout, for `restore`; forcing is not part of it.
+        """
+    @property
+    def drag_impulse(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) impulse of drag on each solid since set_forcing [N s].
+        """
+    @property
+    def elastic_energy(self) -> float:
+        """
+        [J]
+        """
+    @property
+    def kinetic_energy(self) -> float:
+        """
+        [J]
+        """
+    @property
+    def laps(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        (n,) times around the periodic axis.
+        """
+    @property
+    def mass(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) [kg].
+        """
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m], x within the period.
+        """
+    @property
+    def radius(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) [m].
+        """
+    @property
+    def spin(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [rad/s].
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m/s].
+        """
+    @property
+    def wall_impulse(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) impulse of the walls on the solids since the start [N s].
+        """
+def damping_factor(restitution: typing.SupportsFloat | typing.SupportsIndex, p: typing.SupportsFloat | typing.SupportsIndex, q: typing.SupportsFloat | typing.SupportsIndex) -> float:
+    """
+    Factor a of x'' + a x^q x' + x^p = 0 that returns `restitution` without pulling.
+    """
