@@ -1,0 +1,214 @@
+"""Curves: positions against time, and what changes with the height in the pipe."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
+
+from mpsdem.analysis import (
+    extent,
+    height_edges,
+    velocity_over_height,
+    volume_fraction_over_height,
+)
+from mpsdem.plot.frames import chosen_frames, heading, when
+from mpsdem.plot.style import ACCENTS, FAINT, INK, style, time_colours
+from mpsdem.results import Results
+
+FloatArray = NDArray[np.float64]
+
+_SLABS = 40
+_MOST_MEANED = 100  # frames, as a mean over more does not change on paper
+
+
+def positions_over_time(results: Results) -> Figure:
+    """Axial position of front, centre and tail of the solids against time.
+
+    Parameters
+    ----------
+    results : Results
+        A run with solids.
+
+    Returns
+    -------
+    Figure
+        With the way that the liquid goes at its bulk velocity, and the laps of the pipe.
+    """
+    case, time = results.case, results.time
+    x = results.solids.unwrapped_position[:, :, 0]
+    cluster = extent(x)
+    with style():
+        figure, axes = _figure(results, "front, centre and tail of the solids")
+        axes.fill_between(
+            time, cluster.last, cluster.first, color=FAINT, alpha=0.35, linewidth=0,
+            label="all solids",
+        )  # fmt: skip
+        curves = (
+            ("front (95 % of the solids behind)", cluster.front),
+            ("centre (median)", cluster.centre),
+            ("tail (5 % of the solids behind)", cluster.tail),
+        )
+        for (label, curve), colour in zip(curves, ACCENTS, strict=True):
+            axes.plot(time, curve, color=colour, label=label)
+        if case.liquid is not None and case.liquid.bulk_velocity:
+            way = cluster.centre[0] + case.liquid.bulk_velocity * time
+            axes.plot(
+                time, way, color=INK, linewidth=0.8, linestyle=(0, (2, 3)),
+                label="at the liquid's bulk velocity",
+            )  # fmt: skip
+        low, high = min(0.0, float(cluster.last.min())), float(cluster.first.max())
+        axes.set(xlim=(time[0], time[-1] or 1.0), ylim=(low, max(high * 1.04, case.pipe.length)))
+        laps = high / case.pipe.length
+        if laps > 2:
+            axes.yaxis.set_major_locator(MultipleLocator(case.pipe.length * -(-laps // 8)))
+        axes.axhline(case.pipe.length, color=INK, linewidth=0.8, zorder=1)
+        axes.text(time[-1] or 1.0, case.pipe.length, "outlet ", ha="right", va="bottom", size=8)
+        axes.set(xlabel="time (s)", ylabel="distance from the inlet, laps added up (m)")
+        axes.legend(loc="upper left", frameon=True, framealpha=0.9, edgecolor="none")
+    return figure
+
+
+def solids_velocity_over_height(results: Results, times: Sequence[float] | None = None) -> Figure:
+    """Axial velocity of solids and liquid over the height in the pipe.
+
+    Parameters
+    ----------
+    results : Results
+        Any run.
+    times : sequence of float, optional
+        When to look [s]; by default at the start and after successive halves of the run.
+
+    Returns
+    -------
+    Figure
+        Solids as means over slabs, liquid on the vertical through the axis.
+    """
+    radius = results.case.pipe.radius
+    edges = height_edges(radius, _SLABS)
+
+    def profile(frame: int) -> FloatArray:
+        solids = results.solids
+        return velocity_over_height(
+            solids.position[frame], solids.velocity[frame], solids.radius, edges=edges
+        )
+
+    with style():
+        figure, axes = _figure(results, "velocity over height", size=(6.4, 4.4))
+        if results.has_liquid:
+            r, u = results.liquid.profile_radius, results.liquid.profile_velocity
+            height = radius + np.concatenate([-r[::-1], r])
+            axes.plot(
+                np.concatenate([u[::-1], u]), height, color=INK, linewidth=1.0, linestyle="--",
+                label="liquid, prescribed",
+            )  # fmt: skip
+        if results.has_solids:
+            _over_height(axes, results, times, edges, profile)
+        axes.set_xlabel("axial velocity (m/s)")
+        _finish_height(axes, radius)
+    return figure
+
+
+def solids_fraction_over_height(results: Results, times: Sequence[float] | None = None) -> Figure:
+    """Volume fraction of the solids over the height in the pipe, mean over its length.
+
+    Parameters
+    ----------
+    results : Results
+        A run with solids.
+    times : sequence of float, optional
+        When to look [s]; by default at the start and after successive halves of the run.
+
+    Returns
+    -------
+    Figure
+        One curve per time, and the mean of the second half of the run.
+    """
+    pipe, solids = results.case.pipe, results.solids
+    edges = height_edges(pipe.radius, _SLABS)
+
+    def profile(frame: int) -> FloatArray:
+        return volume_fraction_over_height(
+            solids.position[frame],
+            solids.radius,
+            pipe_radius=pipe.radius,
+            length=pipe.length,
+            edges=edges,
+        )
+
+    with style():
+        figure, axes = _figure(results, "volume fraction over height", size=(6.4, 4.4))
+        _over_height(axes, results, times, edges, profile)
+        axes.set_xlabel("volume fraction of the solids, mean over the pipe (-)")
+        axes.set_xlim(left=0)
+        _finish_height(axes, pipe.radius)
+    return figure
+
+
+def pressure_gradient_over_time(results: Results) -> Figure:
+    """Pressure loss along the pipe against time, static head apart.
+
+    Parameters
+    ----------
+    results : Results
+        A run with a liquid.
+
+    Returns
+    -------
+    Figure
+        With the mean of the second half of the run.
+    """
+    time, gradient = results.time, results.pressure_gradient
+    second_half = time >= time[-1] / 2
+    mean = float(gradient[second_half].mean())
+    with style():
+        figure, axes = _figure(results, "pressure loss along the pipe")
+        axes.plot(time, gradient, color=ACCENTS[2], linewidth=1.0)
+        axes.hlines(
+            mean, time[second_half][0], time[-1], color=ACCENTS[0],
+            label=f"mean of the second half: {mean:.4g} Pa/m",
+        )  # fmt: skip
+        axes.set(xlim=(time[0], time[-1] or 1.0), xlabel="time (s)")
+        axes.set_ylabel("pressure loss, static head apart (Pa/m)")
+        axes.legend(loc="upper right")
+    return figure
+
+
+def _figure(
+    results: Results, subject: str, size: tuple[float, float] = (7.2, 4.0)
+) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=size, layout="constrained")
+    axes = figure.add_subplot()
+    axes.set_title(heading(results, subject))
+    return figure, axes
+
+
+def _over_height(
+    axes: Axes,
+    results: Results,
+    times: Sequence[float] | None,
+    edges: FloatArray,
+    profile: Callable[[int], FloatArray],
+) -> None:
+    height = edges[-1] + (edges[1:] + edges[:-1]) / 2
+    frames = chosen_frames(results, times)
+    for frame, colour in zip(frames, time_colours(len(frames)), strict=True):
+        axes.plot(profile(frame), height, color=colour, label=when(results.time[frame]))
+    later = np.flatnonzero(results.time >= results.time[-1] / 2)
+    if later.size > 1:
+        some = later[:: -(-later.size // _MOST_MEANED)]
+        mean = np.ma.masked_invalid([profile(int(frame)) for frame in some]).mean(axis=0)
+        start, end = results.time[later[[0, -1]]]
+        axes.plot(
+            mean.filled(np.nan), height, color=FAINT, linewidth=5, zorder=1,
+            label=f"mean, {when(start)} to {when(end)}",
+        )  # fmt: skip
+
+
+def _finish_height(axes: Axes, radius: float) -> None:
+    axes.set(ylim=(0, 2 * radius), ylabel="height above the bottom of the bore (m)")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))

@@ -1,0 +1,71 @@
+"""Every figure of a run, as files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from mpsdem.plot.curves import (
+    positions_over_time,
+    pressure_gradient_over_time,
+    solids_fraction_over_height,
+    solids_velocity_over_height,
+)
+from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
+from mpsdem.plot.style import DOTS_PER_INCH
+from mpsdem.results import Results
+from mpsdem.results.files import make_directory, writing
+
+
+def save_figures(
+    results: Results,
+    directory: str | os.PathLike[str],
+    *,
+    times: Sequence[float] | None = None,
+) -> list[Path]:
+    """Draw all figures that a run has the numbers for.
+
+    Parameters
+    ----------
+    results : Results
+        The run; it may still go on.
+    directory : path-like
+        Where the PNG files go, created where absent.
+    times : sequence of float, optional
+        Times of side views and sections [s]; by default the start and successive halves of the run.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    OutputError
+        If they cannot be written.
+    """
+    folder = make_directory(Path(directory))
+    paths = []
+    for name, draw in _drawings(results, times):
+        path = folder / f"{name}.png"
+        with writing(path):
+            draw().savefig(path, dpi=DOTS_PER_INCH)
+        paths.append(path)
+    return paths
+
+
+def _drawings(
+    results: Results, times: Sequence[float] | None
+) -> Iterator[tuple[str, Callable[[], Figure]]]:
+    if results.has_solids:
+        yield "side_view", lambda: side_view(results, times)
+        yield "cross_sections", lambda: cross_sections(results, times)
+        yield "silhouette", lambda: silhouettes(results, times)
+        yield "position", lambda: positions_over_time(results)
+        yield "volume_fraction", lambda: solids_fraction_over_height(results, times)
+    yield "velocity", lambda: solids_velocity_over_height(results, times)
+    if "pressure_gradient" in results.diagnostics:
+        yield "pressure_gradient", lambda: pressure_gradient_over_time(results)
