@@ -35,7 +35,9 @@ std::span<const T> values(const Array<T>& a, const char* name) {
     return {a.data(), static_cast<std::size_t>(a.size())};
 }
 
-inline Array<Real> array(Vec3 v) { return Array<Real>(3, &v.x); }
+inline Array<Real> array(Vec3 v) {
+    return Array<Real>(3, &v.x);
+}
 
 template <class T>
 Array<T> array(const std::vector<T>& v) {

@@ -1,0 +1,236 @@
+#include "bindings/array.hpp"
+#include "dem/solids.hpp"
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <tuple>
+
+namespace mpsdem::bindings {
+
+using namespace pybind11::literals;
+
+namespace {
+
+using LawArgument =
+    std::variant<const dem::LinearSpring*, const dem::HertzMindlin*, const dem::HertzViscoelastic*>;
+using WallArgument = std::variant<const geometry::Plane*, const geometry::Cylinder*>;
+
+/// The value behind a variant of pointers: pybind11 fills those, never a value without a default.
+template <class Value, class Argument>
+Value value_of(const Argument& argument, const char* name) {
+    return std::visit(
+        [&](const auto* p) -> Value {
+            require(p != nullptr, std::string(name) + " must not be None");
+            return *p;
+        },
+        argument);
+}
+
+dem::ContactModel model(const LawArgument& law, Real rolling_friction) {
+    return {value_of<dem::AnyContactLaw>(law, "contact law"),
+            dem::RollingResistance(rolling_friction),
+            rolling_friction > 0 ? dem::Rolling::resisted : dem::Rolling::free};
+}
+
+template <class Law>
+auto contact_force(const Law& law, const Array<Real>& normal, const Array<Real>& relative_velocity,
+                   Real overlap, Real reduced_radius, Real reduced_mass, const Array<Real>& spring,
+                   Real dt) {
+    const dem::Contact<Real> contact{vector(normal, "normal"),
+                                     vector(relative_velocity, "relative_velocity"), overlap,
+                                     reduced_radius, reduced_mass};
+    Vec3 s = vector(spring, "spring");
+    const dem::ContactForce<Real> f = law.force(contact, s, dt);
+    return std::tuple(array(f.normal * contact.normal), array(f.tangential), array(s));
+}
+
+template <class Law>
+void bind_contact_force(py::class_<Law>& law) {
+    law.def("contact_force", &contact_force<Law>, py::kw_only(), "normal"_a, "relative_velocity"_a,
+            "overlap"_a, "reduced_radius"_a, "reduced_mass"_a, "spring"_a, "dt"_a,
+            R"(Force of one contact on body i.
+
+Parameters
+----------
+normal : (3,) float64 ndarray
+    Unit vector from body j to body i.
+relative_velocity : (3,) float64 ndarray
+    v_i - v_j at the contact point, spin included [m/s].
+overlap, reduced_radius : float
+    [m].
+reduced_mass : float
+    [kg].
+spring : (3,) float64 ndarray
+    Tangential displacement before the step [m].
+dt : float
+    Step [s].
+
+Returns
+-------
+normal, tangential : (3,) float64 ndarray
+    Force on body i [N].
+spring : (3,) float64 ndarray
+    Tangential displacement after the step [m].
+)");
+}
+
+} // namespace
+
+void bind_dem(py::module_ m) {
+    m.doc() = "Discrete element method: contact laws and the solids. SI units throughout.";
+
+    py::class_<dem::LinearSpring> linear(m, "LinearSpring", "Linear spring-dashpot with friction.");
+    linear
+        .def(py::init<Real, Real, Real, Real, Real>(), py::kw_only(), "normal_stiffness"_a,
+             "tangential_stiffness"_a, "normal_damping"_a, "tangential_damping"_a, "friction"_a)
+        .def_static("with_restitution", &dem::LinearSpring::with_restitution, py::kw_only(),
+                    "normal_stiffness"_a, "tangential_stiffness"_a, "restitution"_a, "friction"_a,
+                    "Damping chosen for each pair so that an impact returns `restitution`.");
+    bind_contact_force(linear);
+
+    py::class_<dem::HertzMindlin> hertz(m, "HertzMindlin",
+                                        "Hertz normal and Mindlin tangential force.");
+    hertz.def(py::init<Real, Real, Real, Real>(), py::kw_only(), "youngs_modulus"_a,
+              "poisson_ratio"_a, "restitution"_a, "friction"_a);
+    bind_contact_force(hertz);
+
+    py::class_<dem::HertzViscoelastic> viscoelastic(
+        m, "HertzViscoelastic", "Hertz contact of viscoelastic bodies, for comparing codes.");
+    viscoelastic.def(py::init<Real, Real, Real, Real, Real>(), py::kw_only(), "normal_stiffness"_a,
+                     "tangential_stiffness"_a, "normal_damping"_a, "tangential_damping"_a,
+                     "friction"_a);
+    bind_contact_force(viscoelastic);
+
+    m.def("damping_factor", &dem::damping_factor, "restitution"_a, "p"_a, "q"_a,
+          "Factor a of x'' + a x^q x' + x^p = 0 that returns `restitution` without pulling.");
+
+    py::class_<dem::AdvanceReport>(m, "AdvanceReport", "What a call of Solids.advance met.")
+        .def_readonly("largest_overlap", &dem::AdvanceReport::largest_overlap,
+                      "Largest overlap over the smaller radius [-].")
+        .def_readonly("prunes", &dem::AdvanceReport::prunes)
+        .def_readonly("sorts", &dem::AdvanceReport::sorts)
+        .def_readonly("finite", &dem::AdvanceReport::finite,
+                      "False when positions or velocities overflowed: the state is lost.");
+
+    py::class_<dem::Solids>(m, "Solids", R"(Spheres that touch each other and walls.
+
+Parameters
+----------
+position, velocity, spin : (n, 3) float64 ndarray
+    [m], [m/s], [rad/s].
+radius, density : (n,) float64 ndarray
+    [m], [kg/m3].
+pair_law, wall_law : LinearSpring, HertzMindlin or HertzViscoelastic
+    Contact law between solids and at walls.
+pair_rolling_friction, wall_rolling_friction : float
+    [-].
+walls : list of Plane or Cylinder
+period : float
+    Length of the periodic x axis [m]; 0 for none.
+threads : int
+    The results do not depend on it.
+)")
+        .def(py::init([](const Array<Real>& position, const Array<Real>& velocity,
+                         const Array<Real>& spin, const Array<Real>& radius,
+                         const Array<Real>& density, const LawArgument& pair_law,
+                         const LawArgument& wall_law, Real pair_rolling_friction,
+                         Real wall_rolling_friction, const std::vector<WallArgument>& walls,
+                         Real period, int threads) {
+                 std::vector<geometry::Wall> surfaces;
+                 for (const WallArgument& wall : walls)
+                     surfaces.push_back(value_of<geometry::Wall>(wall, "wall"));
+                 return dem::Solids(
+                     vectors(position, "position"), vectors(velocity, "velocity"),
+                     vectors(spin, "spin"), values(radius, "radius"), values(density, "density"),
+                     model(pair_law, pair_rolling_friction), model(wall_law, wall_rolling_friction),
+                     std::move(surfaces), period, threads);
+             }),
+             py::kw_only(), "position"_a, "velocity"_a, "spin"_a, "radius"_a, "density"_a,
+             "pair_law"_a, "wall_law"_a, "pair_rolling_friction"_a = 0.,
+             "wall_rolling_friction"_a = 0., "walls"_a = std::vector<WallArgument>{},
+             "period"_a = 0., "threads"_a = 1)
+        .def("__len__", &dem::Solids::size)
+        .def(
+            "set_forcing",
+            [](dem::Solids& solids, const Array<Real>& acceleration,
+               const std::optional<Array<Real>>& liquid_velocity,
+               const std::optional<Array<Real>>& drag_rate) {
+                solids.set_forcing(vectors(acceleration, "acceleration"),
+                                   liquid_velocity ? vectors(*liquid_velocity, "liquid_velocity")
+                                                   : std::span<const Vec3>{},
+                                   drag_rate ? values(*drag_rate, "drag_rate")
+                                             : std::span<const Real>{});
+            },
+            py::kw_only(), "acceleration"_a, "liquid_velocity"_a = py::none(),
+            "drag_rate"_a = py::none(),
+            R"(From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v).
+
+Drag is implicit in v. Starts the sums of `drag_impulse` anew.
+
+Parameters
+----------
+acceleration : (n, 3) float64 ndarray
+    [m/s2].
+liquid_velocity : (n, 3) float64 ndarray, optional
+    [m/s]; together with `drag_rate`.
+drag_rate : (n,) float64 ndarray, optional
+    [1/s].
+)")
+        .def("advance", &dem::Solids::advance, "dt"_a, "steps"_a,
+             py::call_guard<py::gil_scoped_release>(),
+             "Take `steps` steps of velocity Verlet of `dt` [s].")
+        .def_property_readonly(
+            "position", [](const dem::Solids& s) { return array(s.position()); },
+            "(n, 3) [m], x within the period.")
+        .def_property_readonly(
+            "velocity", [](const dem::Solids& s) { return array(s.velocity()); }, "(n, 3) [m/s].")
+        .def_property_readonly(
+            "spin", [](const dem::Solids& s) { return array(s.spin()); }, "(n, 3) [rad/s].")
+        .def_property_readonly(
+            "radius", [](const dem::Solids& s) { return array(s.radius()); }, "(n,) [m].")
+        .def_property_readonly(
+            "mass", [](const dem::Solids& s) { return array(s.mass()); }, "(n,) [kg].")
+        .def_property_readonly(
+            "laps", [](const dem::Solids& s) { return array(s.laps()); },
+            "(n,) times around the periodic axis.")
+        .def_property_readonly(
+            "drag_impulse", [](const dem::Solids& s) { return array(s.drag_impulse()); },
+            "(n, 3) impulse of drag on each solid since set_forcing [N s].")
+        .def_property_readonly(
+            "wall_impulse", [](const dem::Solids& s) { return array(s.wall_impulse()); },
+            "(3,) impulse of the walls on the solids since the start [N s].")
+        .def_property_readonly("kinetic_energy", &dem::Solids::kinetic_energy, "[J]")
+        .def_property_readonly("elastic_energy", &dem::Solids::elastic_energy, "[J]")
+        .def(
+            "contacts",
+            [](const dem::Solids& s) {
+                const dem::ContactTable t = s.contacts();
+                return py::dict("first"_a = array(t.first), "second"_a = array(t.second),
+                                "overlap"_a = array(t.overlap), "normal"_a = array(t.normal),
+                                "force"_a = array(t.force));
+            },
+            "What touches now: first, second (-1 - w for wall w), overlap [m], normal, force [N].")
+        .def(
+            "state",
+            [](const dem::Solids& s) {
+                const auto snapshot = s.snapshot();
+                return py::dict("reals"_a = array(snapshot.reals),
+                                "integers"_a = array(snapshot.integers));
+            },
+            "The exact state as arrays of private layout, for `restore`; forcing is not part of "
+            "it.")
+        .def(
+            "restore",
+            [](dem::Solids& s, const py::dict& state) {
+                const auto reals = state["reals"].cast<Array<Real>>();
+                const auto integers = state["integers"].cast<Array<std::int64_t>>();
+                const auto r = values(reals, "reals");
+                const auto k = values(integers, "integers");
+                s.restore({{r.begin(), r.end()}, {k.begin(), k.end()}});
+            },
+            "state"_a, "Continue bit-equal from a `state` of the same population.");
+}
+
+} // namespace mpsdem::bindings

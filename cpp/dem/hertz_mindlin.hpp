@@ -1,0 +1,58 @@
+#pragma once
+
+#include "core/check.hpp"
+#include "dem/friction.hpp"
+#include "dem/restitution.hpp"
+
+namespace mpsdem::dem {
+
+/// Hertz normal and Mindlin (no micro-slip) tangential force between bodies of one material.
+///
+///   F_n = (2/3) S_n d - c_n v_n >= 0   S_n = 2 E* sqrt(R* d),   E* = E / (2 (1 - nu^2))
+///   F_t by friction_force              S_t = 8 G* sqrt(R* d),   G* = E / (4 (2 - nu) (1 + nu))
+///   c   = a sqrt(2/3 S m*)             a from damping_factor(e, 3/2, 1/4)
+///
+/// Source: Di Renzo & Di Maio (2004) doi:10.1016/j.ces.2003.09.037, eqs. 4-14. Deviation: contacts
+/// do not pull, and the damping is calibrated for that, so that `restitution` is what comes back.
+class HertzMindlin {
+public:
+    HertzMindlin(Real youngs_modulus, Real poisson_ratio, Real restitution, Real friction)
+        : e_star_(youngs_modulus / (2 * (1 - poisson_ratio * poisson_ratio))),
+          g_star_(youngs_modulus / (4 * (2 - poisson_ratio) * (1 + poisson_ratio))),
+          friction_(friction) {
+        require(youngs_modulus > 0, "HertzMindlin: youngs_modulus must be > 0 Pa");
+        require(poisson_ratio > -1 && poisson_ratio <= 0.5,
+                "HertzMindlin: poisson_ratio must lie in (-1, 0.5]");
+        require(restitution > 0 && restitution <= 1,
+                "HertzMindlin: restitution must lie in (0, 1]");
+        require(friction >= 0, "HertzMindlin: friction must be >= 0");
+        damping_ = damping_factor(restitution, 1.5, 0.25) * std::sqrt(2. / 3);
+    }
+
+    template <class T>
+    [[nodiscard]] ContactForce<T> force(const Contact<T>& c, Vector<T>& spring,
+                                        Real dt) const noexcept {
+        const T root = sqrt(c.reduced_radius * c.overlap);
+        const T s_n = 2 * e_star_ * root;
+        const T s_t = 8 * g_star_ * root;
+        const T c_n = damping_ * sqrt(s_n * c.reduced_mass);
+        const T c_t = damping_ * sqrt(s_t * c.reduced_mass);
+        const T f_n = max(2. / 3 * s_n * c.overlap - c_n * dot(c.relative_velocity, c.normal), T{});
+        return {f_n, friction_force(c, spring, s_t, c_t, friction_ * f_n, dt), s_t};
+    }
+
+    [[nodiscard]] Real energy(const Contact<Real>& c, const Vec3& spring) const noexcept {
+        const Real root = std::sqrt(c.reduced_radius * c.overlap);
+        return 8. / 15 * e_star_ * root * c.overlap * c.overlap +
+               4 * g_star_ * root * dot(spring, spring);
+    }
+
+private:
+    Real e_star_;      // [Pa]
+    Real g_star_;      // [Pa]
+    Real friction_;    // [-]
+    Real damping_ = 0; // [-]
+};
+static_assert(ContactLaw<HertzMindlin>);
+
+} // namespace mpsdem::dem

@@ -1,0 +1,609 @@
+#include "dem/solids.hpp"
+
+#include "core/parallel.hpp"
+#include "dem/integrator.hpp"
+#include "dem/pair_contact.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace mpsdem::dem {
+
+namespace {
+
+using P = Population;
+
+// List settings change speed only, never the forces beyond the order of their sums.
+constexpr std::size_t single_block = 4096; // [-] solids that one thread handles faster than two
+constexpr std::size_t block_size = 2048;   // [-]
+constexpr std::size_t chunk = 64;          // [-] solids moved at a time: 16 kB
+constexpr Real inner_steps = 20;           // [-] steps that an inner list should last
+constexpr Real least_inner_skin = 0.005;   // [-] over the mean radius
+constexpr Real outer_steps = 400;          // [-] steps that an outer list should last
+constexpr Real least_outer_skin = 0.25, most_outer_skin = 0.8; // [-] over the mean radius
+
+/// A touching pair on its way from one order of the solids to the next.
+struct Carried {
+    Index partner;
+    std::int32_t image;
+    History history;
+};
+
+} // namespace
+
+Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
+               std::span<const Vec3> spin, std::span<const Real> radius,
+               std::span<const Real> density, const ContactModel& between_solids,
+               const ContactModel& at_walls, std::vector<geometry::Wall> walls, Real period,
+               int threads)
+    : solids_(position.size()), walls_(std::move(walls)), pair_model_(between_solids),
+      wall_model_(at_walls), period_(period), threads_(threads) {
+    const std::size_t n = position.size();
+    require(n > 0, "Solids: at least one solid is needed");
+    require(velocity.size() == n && spin.size() == n && radius.size() == n && density.size() == n,
+            "Solids: position, velocity, spin, radius and density must have the same length");
+    require(threads >= 1, "Solids: threads must be >= 1");
+    require(period >= 0, "Solids: period must be >= 0 m (0: not periodic)");
+    for (std::size_t i = 0; i < n; ++i) {
+        require(radius[i] > 0, "Solids: radius must be > 0 m");
+        require(density[i] > 0, "Solids: density must be > 0 kg/m3");
+        solids_.at(P::RADIUS, i) = radius[i];
+        const Real volume = 4. / 3 * std::numbers::pi * radius[i] * radius[i] * radius[i];
+        solids_.at(P::INVERSE_MASS, i) = 1 / (density[i] * volume);
+        solids_.set(P::X, i, position[i]);
+        solids_.set(P::VX, i, velocity[i]);
+        solids_.set(P::SX, i, radius[i] * spin[i]);
+        solids_.id()[i] = static_cast<Index>(i);
+    }
+    require(finite(), "Solids: position, velocity and spin must be finite");
+    max_radius_ = *std::max_element(radius.begin(), radius.end());
+    mean_radius_ = std::accumulate(radius.begin(), radius.end(), 0.) / static_cast<Real>(n);
+    require(period == 0 || period >= 4 * max_radius_,
+            "Solids: period must be at least two diameters of the largest solid, else a solid "
+            "touches its own image");
+
+    const std::size_t size = n <= single_block ? solids_.padded() : block_size;
+    for (std::size_t begin = 0; begin < solids_.padded(); begin += size) {
+        Block block;
+        block.begin = begin;
+        block.end = std::min(begin + size, solids_.padded());
+        blocks_.push_back(std::move(block));
+    }
+    at_wall_.assign(walls_.size(),
+                    {AlignedVector<Real>(solids_.padded() * WallHistory::field_count),
+                     std::vector<std::uint8_t>(solids_.padded() / lane_count)});
+    [[maybe_unused]] const bool sorted = sort();
+    // forces of the first half kick; no displacement is added
+    for (Block& block : blocks_) wall_forces(block, block.begin, block.end, 0);
+    pair_forces(0);
+}
+
+void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
+                         std::span<const Real> drag_rate) {
+    const std::size_t n = size();
+    require(acceleration.size() == n, "set_forcing: acceleration must have shape (n, 3)");
+    require(liquid_velocity.size() == drag_rate.size() &&
+                (drag_rate.empty() || drag_rate.size() == n),
+            "set_forcing: liquid_velocity (n, 3) and drag_rate (n,) come together");
+    medium_ = drag_rate.empty() ? Medium::dry : Medium::liquid;
+    forcing_time_ = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Index id = solids_.id()[i];
+        const Real k = drag_rate.empty() ? 0 : drag_rate[id];
+        const Vec3 u = drag_rate.empty() ? Vec3{} : liquid_velocity[id];
+        solids_.set(P::AX, i, acceleration[id] + k * u);
+        solids_.set(P::UX, i, u);
+        solids_.at(P::DRAG, i) = k;
+        solids_.set(P::PX, i, {});
+    }
+}
+
+AdvanceReport Solids::advance(Real dt, std::size_t steps) {
+    require(dt > 0, "advance: dt must be > 0 s");
+    AdvanceReport report;
+    for (Block& block : blocks_) block.largest_overlap = 0;
+    for (std::size_t step = 0; step < steps; ++step) {
+        move(step == 0 ? dt / 2 : dt, dt); // the kick closes the step before, too
+        update_lists(dt, report);
+        if (!report.finite) return report;
+        pair_forces(dt);
+    }
+    if (steps > 0) kick_all(dt / 2);
+    for (const Block& block : blocks_)
+        report.largest_overlap = std::max(report.largest_overlap, block.largest_overlap);
+    report.finite = finite();
+    return report;
+}
+
+void Solids::kick_all(Real dt) {
+    forcing_time_ += dt;
+    parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+        Block& block = blocks_[b];
+        if (medium_ == Medium::dry)
+            kick<Medium::dry>(solids_, block.begin, block.end, dt);
+        else
+            kick<Medium::liquid>(solids_, block.begin, block.end, dt);
+        block.wall_impulse += dt * block.wall_force;
+    });
+}
+
+/// Kick, drift and wall contacts, a few tiles at a time while they are in the nearest cache.
+void Solids::move(Real kick_time, Real dt) {
+    forcing_time_ += kick_time;
+    const auto run =
+        medium_ == Medium::dry ? &kick_and_drift<Medium::dry> : &kick_and_drift<Medium::liquid>;
+    parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+        Block& block = blocks_[b];
+        block.wall_impulse += kick_time * block.wall_force;
+        block.wall_force = {};
+        block.fastest2 = 0;
+        for (std::size_t first = block.begin; first < block.end; first += chunk) {
+            const std::size_t last = std::min(first + chunk, block.end);
+            const Real fastest2 = run(solids_, first, last, kick_time, dt, frame_velocity_);
+            block.fastest2 = std::max(block.fastest2, fastest2);
+            wall_forces(block, first, last, dt);
+        }
+    });
+}
+
+void Solids::wall_forces(Block& block, std::size_t first, std::size_t last, Real dt) {
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+        std::visit(
+            [&](const auto& law, const auto& wall) {
+                const auto run = wall_model_.mode == Rolling::free
+                                     ? &wall_contact<Rolling::free, std::decay_t<decltype(law)>,
+                                                     std::decay_t<decltype(wall)>>
+                                     : &wall_contact<Rolling::resisted, std::decay_t<decltype(law)>,
+                                                     std::decay_t<decltype(wall)>>;
+                run(law, wall_model_.rolling, wall, solids_, block, first, last, at_wall_[w], dt);
+            },
+            wall_model_.law, walls_[w]);
+    }
+}
+
+void Solids::pair_forces(Real dt) {
+    parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+        std::visit(
+            [&](const auto& law) {
+                const auto run =
+                    pair_model_.mode == Rolling::free
+                        ? &pair_contact<Rolling::free, std::decay_t<decltype(law)>>
+                        : &pair_contact<Rolling::resisted, std::decay_t<decltype(law)>>;
+                run(law, pair_model_.rolling, solids_, blocks_[b], dt);
+            },
+            pair_model_.law);
+    });
+    if (blocks_.size() > 1) {
+        parallel_for_blocks(blocks_.size(), threads_,
+                            [&](std::size_t b) { apply_incoming(solids_, blocks_, blocks_[b]); });
+    }
+}
+
+void Solids::update_lists(Real dt, AdvanceReport& report) {
+    Real fastest2 = 0;
+    for (const Block& block : blocks_) fastest2 = std::max(fastest2, block.fastest2);
+    fastest_ = std::sqrt(fastest2);
+    frame_time_ += dt;
+    approach_ += 2 * fastest_ * dt;
+    if (approach_ <= inner_skin_) return;
+
+    ++report.prunes;
+    parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+        Block& block = blocks_[b];
+        block.displacement2 = 0;
+        const Vec3 shift = frame_time_ * frame_velocity_;
+        for (std::size_t i = block.begin; i < std::min(block.end, size()); ++i) {
+            const Vec3 moved = solids_.vector(P::X, i) - solids_.vector(P::X0, i) - shift;
+            block.displacement2 = std::max(block.displacement2, dot(moved, moved));
+        }
+    });
+    Real displacement2 = 0;
+    for (const Block& block : blocks_) displacement2 = std::max(displacement2, block.displacement2);
+    const Real left = outer_skin_ - 2 * std::sqrt(displacement2);
+    inner_skin_ = std::clamp(2 * fastest_ * dt * inner_steps, least_inner_skin * mean_radius_,
+                             outer_skin_ / 2);
+    approach_ = 0;
+    if (left >= inner_skin_) {
+        parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+            Block& block = blocks_[b];
+            build_inner(block, [&](Index pair) { // `spare` is the list before
+                const std::int32_t slot = block.slot_of_outer[pair];
+                return slot < 0 ? History{} : block.spare.history(static_cast<std::size_t>(slot));
+            });
+        });
+        link_blocks();
+        return;
+    }
+    ++report.sorts;
+    outer_skin_ = std::clamp(2 * fastest_ * dt * outer_steps, least_outer_skin * mean_radius_,
+                             most_outer_skin * mean_radius_);
+    inner_skin_ = std::min(inner_skin_, outer_skin_ / 2);
+    report.finite = sort();
+}
+
+bool Solids::sort() {
+    const std::size_t n = size();
+    if (outer_skin_ == 0) {
+        outer_skin_ = least_outer_skin * mean_radius_;
+        inner_skin_ = least_inner_skin * mean_radius_;
+    }
+    if (!finite()) return false;
+
+    std::vector<std::int32_t> wraps(n);
+    if (period_ > 0) {
+        for (std::size_t i = 0; i < n; ++i) {
+            Real& x = solids_.at(P::X, i);
+            auto wrap = static_cast<std::int32_t>(std::floor(x / period_));
+            x -= wrap * period_;
+            if (x >= period_) {
+                x -= period_;
+                ++wrap;
+            } else if (x < 0) {
+                x = 0; // rounding of a hair below zero
+            }
+            wraps[i] = wrap;
+            solids_.laps()[i] += wrap;
+        }
+    }
+
+    const Real reach = 2 * max_radius_ + outer_skin_;
+    grid_ = neighbors::CellGrid(reach, period_);
+    std::vector<Index> order;
+    std::vector<Vec3> position(n);
+    for (std::size_t i = 0; i < n; ++i) position[i] = solids_.vector(P::X, i);
+    grid_.sort(position, order);
+    std::vector<Index> place(n); // where a solid goes
+    for (std::size_t k = 0; k < n; ++k) place[order[k]] = static_cast<Index>(k);
+
+    // Touching pairs, by the row in which they will be looked for.
+    std::vector<Index> row(n + 1);
+    std::vector<std::pair<Index, Carried>> touching;
+    for (const Block& block : blocks_) {
+        const InnerPairs& inner = block.inner;
+        for (std::size_t s = 0; s < inner.size; ++s) {
+            const History history = inner.history(s);
+            if (inner.outer[s] == InnerPairs::padding || history == History{}) continue;
+            const std::size_t i = P::index(inner.first[s]), j = P::index(inner.second[s]);
+            const std::int32_t image = block.outer.image[inner.outer[s]] + wraps[i] - wraps[j];
+            if (place[i] < place[j])
+                touching.push_back({place[i], {place[j], image, history}});
+            else
+                touching.push_back({place[j], {place[i], -image, -history}});
+            ++row[touching.back().first + 1];
+        }
+    }
+    std::partial_sum(row.begin(), row.end(), row.begin());
+    std::vector<Carried> carried(touching.size());
+    std::vector<Index> next(row.begin(), row.end() - 1);
+    for (const auto& [i, pair] : touching) carried[next[i]++] = pair;
+
+    solids_.permute(order);
+    for (WallHistory& wall : at_wall_) {
+        AlignedVector<Real> sorted(wall.values.size());
+        for (std::size_t k = 0; k < n; ++k)
+            for (std::size_t f = 0; f < WallHistory::field_count; ++f)
+                sorted[WallHistory::place(k) + f * lanes] =
+                    wall.values[WallHistory::place(order[k]) + f * lanes];
+        wall.values = std::move(sorted);
+        std::fill(wall.active.begin(), wall.active.end(), std::uint8_t{1});
+    }
+    Vec3 sum;
+    for (std::size_t i = 0; i < n; ++i) {
+        solids_.set(P::X0, i, solids_.vector(P::X, i));
+        sum += solids_.vector(P::VX, i);
+    }
+    frame_velocity_ = (1 / static_cast<Real>(n)) * sum;
+    frame_time_ = approach_ = 0;
+
+    parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+        Block& block = blocks_[b];
+        OuterPairs& outer = block.outer;
+        outer.row.assign(1, 0);
+        outer.second.clear();
+        outer.image.clear();
+        std::vector<History> found; // by outer pair
+        for (std::size_t i = block.begin; i < std::min(block.end, n); ++i) {
+            grid_.around(grid_.cell(i), [&](Index begin, Index end, int image) {
+                const Vec3 x_i = position[order[i]] + Vec3{image * period_, 0, 0};
+                const Real reach_i = solids_.at(P::RADIUS, i) + outer_skin_;
+                for (std::size_t j = std::max<std::size_t>(begin, i + 1); j < end; ++j) {
+                    const Vec3 d = x_i - position[order[j]];
+                    const Real range = reach_i + solids_.at(P::RADIUS, j);
+                    if (dot(d, d) >= range * range) continue;
+                    outer.second.push_back(static_cast<Index>(j));
+                    outer.image.push_back(static_cast<std::int8_t>(image));
+                    found.emplace_back();
+                    for (Index c = row[i]; c < row[i + 1]; ++c)
+                        if (carried[c].partner == j && carried[c].image == image)
+                            found.back() = carried[c].history;
+                }
+            });
+            outer.row.push_back(static_cast<Index>(outer.second.size()));
+        }
+        build_inner(block, [&](Index pair) { return found[pair]; });
+    });
+    link_blocks();
+    return true;
+}
+
+/// Filter the outer pairs of a block into its inner list; `history_of` tells a pair's
+/// displacements.
+template <class HistoryOf>
+void Solids::build_inner(Block& block, const HistoryOf& history_of) {
+    const OuterPairs& outer = block.outer;
+    std::swap(block.inner, block.spare);
+    block.inner.clear();
+    std::vector<std::int32_t> slot_of(outer.second.size(), -1);
+    const auto take = [&](bool cross) {
+        for (std::size_t r = 0; r + 1 < outer.row.size(); ++r) {
+            const std::size_t i = block.begin + r;
+            const Vec3 x_i = solids_.vector(P::X, i);
+            const Real reach_i = solids_.at(P::RADIUS, i) + inner_skin_;
+            for (Index pair = outer.row[r]; pair < outer.row[r + 1]; ++pair) {
+                const Index j = outer.second[pair];
+                if ((j >= block.end) != cross) continue;
+                const Real shift = outer.image[pair] * period_;
+                const Vec3 d = x_i - solids_.vector(P::X, j) + Vec3{shift, 0, 0};
+                const Real range = reach_i + solids_.at(P::RADIUS, j);
+                if (dot(d, d) >= range * range) continue;
+                slot_of[pair] = static_cast<std::int32_t>(block.inner.size);
+                block.inner.append(solids_, i, j, shift, pair, history_of(pair));
+            }
+        }
+        block.inner.pad(block.begin);
+    };
+    take(false);
+    block.inner.cross_begin = block.inner.size;
+    if (blocks_.size() > 1) take(true);
+    block.cross.resize((block.inner.size - block.inner.cross_begin) * 6);
+    block.slot_of_outer = std::move(slot_of);
+}
+
+/// Tell every block which pairs of earlier blocks end in it.
+void Solids::link_blocks() {
+    if (blocks_.size() == 1) return;
+    for (Block& block : blocks_) block.incoming.clear();
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        const InnerPairs& inner = blocks_[b].inner;
+        for (std::size_t s = inner.cross_begin; s < inner.size; ++s) {
+            if (inner.outer[s] == InnerPairs::padding) continue;
+            blocks_[P::index(inner.second[s]) / block_size].incoming.push_back(
+                {static_cast<Index>(b), static_cast<Index>(s - inner.cross_begin)});
+        }
+    }
+}
+
+bool Solids::finite() const noexcept {
+    Real check = 0;
+    for (const auto field : {P::X, P::Y, P::Z, P::VX, P::VY, P::VZ, P::SX, P::SY, P::SZ})
+        for (std::size_t i = 0; i < size(); ++i) check += 0 * solids_.at(field, i);
+    return check == 0; // 0 * NaN and 0 * infinity are NaN
+}
+
+template <class T, class Value>
+std::vector<T> Solids::in_callers_order(const Value& value) const {
+    std::vector<T> out(size());
+    for (std::size_t i = 0; i < size(); ++i) out[solids_.id()[i]] = value(i);
+    return out;
+}
+
+std::vector<Vec3> Solids::position() const {
+    return in_callers_order<Vec3>([&](std::size_t i) {
+        Vec3 x = solids_.vector(P::X, i);
+        if (period_ > 0) x.x -= std::floor(x.x / period_) * period_;
+        if (period_ > 0 && x.x >= period_) x.x = 0;
+        return x;
+    });
+}
+
+std::vector<std::int64_t> Solids::laps() const {
+    return in_callers_order<std::int64_t>([&](std::size_t i) {
+        const Real x = solids_.at(P::X, i);
+        if (period_ == 0) return std::int64_t{0};
+        auto wrap = static_cast<std::int64_t>(std::floor(x / period_));
+        if (x - static_cast<Real>(wrap) * period_ >= period_) ++wrap;
+        return solids_.laps()[i] + wrap;
+    });
+}
+
+std::vector<Vec3> Solids::velocity() const {
+    return in_callers_order<Vec3>([&](std::size_t i) { return solids_.vector(P::VX, i); });
+}
+
+std::vector<Vec3> Solids::spin() const {
+    return in_callers_order<Vec3>(
+        [&](std::size_t i) { return (1 / solids_.at(P::RADIUS, i)) * solids_.vector(P::SX, i); });
+}
+
+std::vector<Real> Solids::radius() const {
+    return in_callers_order<Real>([&](std::size_t i) { return solids_.at(P::RADIUS, i); });
+}
+
+std::vector<Real> Solids::mass() const {
+    return in_callers_order<Real>(
+        [&](std::size_t i) { return 1 / solids_.at(P::INVERSE_MASS, i); });
+}
+
+/// The sum over kicks of m k (u - v) dt, as each implicit kick applied it.
+std::vector<Vec3> Solids::drag_impulse() const {
+    return in_callers_order<Vec3>([&](std::size_t i) {
+        const Real rate = solids_.at(P::DRAG, i) / solids_.at(P::INVERSE_MASS, i);
+        return rate * (forcing_time_ * solids_.vector(P::UX, i) - solids_.vector(P::PX, i));
+    });
+}
+
+Vec3 Solids::wall_impulse() const {
+    Vec3 sum;
+    for (const Block& block : blocks_) sum += block.wall_impulse;
+    return sum;
+}
+
+Real Solids::kinetic_energy() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+        const Vec3 v = solids_.vector(P::VX, i), s = solids_.vector(P::SX, i);
+        sum += (dot(v, v) + 0.4 * dot(s, s)) / (2 * solids_.at(P::INVERSE_MASS, i));
+    }
+    return sum;
+}
+
+/// visit(model, contact, history, first, second) for everything that touches now.
+template <class Visit>
+void Solids::for_each_contact(const Visit& visit) const {
+    for (const Block& block : blocks_) {
+        const InnerPairs& inner = block.inner;
+        for (std::size_t s = 0; s < inner.size; ++s) {
+            if (inner.outer[s] == InnerPairs::padding) continue;
+            const std::size_t i = P::index(inner.first[s]), j = P::index(inner.second[s]);
+            const Vec3 d = solids_.vector(P::X, i) - solids_.vector(P::X, j) +
+                           Vec3{inner.at(InnerPairs::SHIFT, s), 0, 0};
+            const Real overlap = inner.at(InnerPairs::RADIUS_SUM, s) - norm(d);
+            if (overlap <= 0) continue;
+            const Vec3 normal = (1 / norm(d)) * d;
+            const Vec3 velocity =
+                solids_.vector(P::VX, i) - solids_.vector(P::VX, j) -
+                cross(solids_.vector(P::SX, i) + solids_.vector(P::SX, j), normal);
+            const Contact<Real> c{normal, velocity, overlap,
+                                  inner.at(InnerPairs::REDUCED_RADIUS, s),
+                                  inner.at(InnerPairs::REDUCED_MASS, s)};
+            visit(pair_model_, c, inner.history(s), std::int64_t{solids_.id()[i]},
+                  std::int64_t{solids_.id()[j]});
+        }
+    }
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+        std::visit(
+            [&](const auto& wall) {
+                for (std::size_t i = 0; i < size(); ++i) {
+                    const Contact<Real> c =
+                        wall_contact_of(wall, solids_.vector(P::X, i), solids_.vector(P::VX, i),
+                                        solids_.vector(P::SX, i), solids_.at(P::RADIUS, i),
+                                        solids_.at(P::INVERSE_MASS, i));
+                    if (c.overlap > 0)
+                        visit(wall_model_, c, at_wall_[w].at(i), std::int64_t{solids_.id()[i]},
+                              -1 - static_cast<std::int64_t>(w));
+                }
+            },
+            walls_[w]);
+    }
+}
+
+Real Solids::elastic_energy() const {
+    Real sum = 0;
+    for_each_contact([&](const ContactModel& model, const Contact<Real>& c, const History& history,
+                         std::int64_t, std::int64_t) {
+        sum +=
+            std::visit([&](const auto& law) { return law.energy(c, history.spring); }, model.law);
+    });
+    return sum;
+}
+
+ContactTable Solids::contacts() const {
+    ContactTable table;
+    for_each_contact([&](const ContactModel& model, const Contact<Real>& c, History history,
+                         std::int64_t first, std::int64_t second) {
+        const ContactForce<Real> force =
+            std::visit([&](const auto& law) { return law.force(c, history.spring, 0); }, model.law);
+        table.first.push_back(first);
+        table.second.push_back(second);
+        table.overlap.push_back(c.overlap);
+        table.normal.push_back(c.normal);
+        table.force.push_back(force.normal * c.normal + force.tangential);
+    });
+    return table;
+}
+
+namespace {
+
+/// Writes or reads numbers in one fixed sequence, so that saving and restoring cannot disagree.
+struct Writer {
+    Solids::Snapshot& out;
+    void operator()(Real& v) { out.reals.push_back(v); }
+    template <std::integral T>
+    void operator()(T& v) {
+        out.integers.push_back(static_cast<std::int64_t>(v));
+    }
+    template <class T, class A>
+    void resize(std::vector<T, A>& v) {
+        out.integers.push_back(static_cast<std::int64_t>(v.size()));
+    }
+};
+
+struct Reader {
+    const Solids::Snapshot& in;
+    std::size_t real = 0, integer = 0;
+    void operator()(Real& v) {
+        require(real < in.reals.size(), "restore: the snapshot is too short");
+        v = in.reals[real++];
+    }
+    template <std::integral T>
+    void operator()(T& v) {
+        require(integer < in.integers.size(), "restore: the snapshot is too short");
+        v = static_cast<T>(in.integers[integer++]);
+    }
+    template <class T, class A>
+    void resize(std::vector<T, A>& v) {
+        std::size_t n = 0;
+        (*this)(n);
+        require(n <= in.reals.size() + in.integers.size(), "restore: the snapshot is damaged");
+        v.resize(n);
+    }
+};
+
+} // namespace
+
+template <class Archive>
+void Solids::exchange(Archive& archive) {
+    const auto vec = [&](Vec3& v) {
+        archive(v.x);
+        archive(v.y);
+        archive(v.z);
+    };
+    const auto vector = [&](auto& values) {
+        archive.resize(values);
+        for (auto& v : values) archive(v);
+    };
+    for (std::size_t k = 0; k < solids_.padded() * P::field_count; ++k)
+        archive(solids_.values()[k]);
+    for (Index& id : solids_.id()) archive(id);
+    for (std::int32_t& laps : solids_.laps()) archive(laps);
+    for (WallHistory& wall : at_wall_) {
+        vector(wall.values);
+        for (std::uint8_t& active : wall.active) archive(active);
+    }
+    vec(frame_velocity_);
+    for (Real* v : {&frame_time_, &approach_, &outer_skin_, &inner_skin_, &fastest_}) archive(*v);
+    for (Block& block : blocks_) {
+        vector(block.outer.row);
+        vector(block.outer.second);
+        vector(block.outer.image);
+        vector(block.slot_of_outer);
+        vector(block.inner.first);
+        vector(block.inner.second);
+        vector(block.inner.outer);
+        vector(block.inner.values);
+        archive(block.inner.cross_begin);
+        block.inner.size = block.inner.first.size();
+        block.cross.resize((block.inner.size - block.inner.cross_begin) * 6);
+        vec(block.wall_force);
+        vec(block.wall_impulse);
+    }
+}
+
+Solids::Snapshot Solids::snapshot() const {
+    Snapshot out;
+    Writer writer{out};
+    const_cast<Solids*>(this)->exchange(writer); // writes no member
+    return out;
+}
+
+void Solids::restore(const Snapshot& snapshot) {
+    Reader reader{snapshot};
+    exchange(reader);
+    require(reader.real == snapshot.reals.size() && reader.integer == snapshot.integers.size(),
+            "restore: the snapshot belongs to another population");
+    link_blocks();
+}
+
+} // namespace mpsdem::dem

@@ -1,0 +1,123 @@
+#pragma once
+
+#include "dem/hertz_mindlin.hpp"
+#include "dem/hertz_viscoelastic.hpp"
+#include "dem/linear_spring.hpp"
+#include "dem/pair_list.hpp"
+#include "dem/rolling_resistance.hpp"
+#include "dem/wall_contact.hpp"
+#include "geometry/wall.hpp"
+#include "neighbors/cell_grid.hpp"
+
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace mpsdem::dem {
+
+using AnyContactLaw = std::variant<LinearSpring, HertzMindlin, HertzViscoelastic>;
+
+/// How solids touch each other, or a wall.
+struct ContactModel {
+    AnyContactLaw law;
+    RollingResistance rolling;
+    Rolling mode;
+};
+
+/// What a call of Solids::advance met.
+struct AdvanceReport {
+    Real largest_overlap = 0; // [-] over the smaller radius
+    std::size_t prunes = 0;   // times the inner lists were made
+    std::size_t sorts = 0;    // of these, times the solids were sorted and the outer lists made
+    bool finite = true;       // false: positions or velocities overflowed; the state is lost
+};
+
+/// Everything that touches at one instant, in the caller's numbering.
+struct ContactTable {
+    std::vector<std::int64_t> first, second; // second = -1 - w for wall w
+    std::vector<Real> overlap;               // [m]
+    std::vector<Vec3> normal;                // [-] from second to first
+    std::vector<Vec3> force;                 // [N] on first
+};
+
+/// Spheres that touch each other and walls: state, lists and the substep loop.
+///
+/// Two lists: the outer one (cell grid, skin of a fraction of a radius) is filtered into an inner
+/// one of pairs that nearly touch. An inner list is valid while twice the summed largest speed,
+/// relative to the mean velocity at the last sort, is below its skin; this bound is exact, nothing
+/// is missed.
+class Solids {
+public:
+    Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
+           std::span<const Vec3> spin, std::span<const Real> radius, std::span<const Real> density,
+           const ContactModel& between_solids, const ContactModel& at_walls,
+           std::vector<geometry::Wall> walls, Real period, int threads);
+
+    /// From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v). Spans may be
+    /// empty: no drag. Starts the sums of `drag_impulse` anew.
+    void set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
+                     std::span<const Real> drag_rate);
+
+    /// `steps` steps of velocity Verlet of `dt` [s].
+    AdvanceReport advance(Real dt, std::size_t steps);
+
+    [[nodiscard]] std::size_t size() const noexcept { return solids_.size(); }
+    [[nodiscard]] std::vector<Vec3> position() const; // [m] in the period
+    [[nodiscard]] std::vector<Vec3> velocity() const; // [m/s]
+    [[nodiscard]] std::vector<Vec3> spin() const;     // [rad/s]
+    [[nodiscard]] std::vector<Real> radius() const;   // [m]
+    [[nodiscard]] std::vector<Real> mass() const;     // [kg]
+    [[nodiscard]] std::vector<std::int64_t> laps() const;
+    [[nodiscard]] std::vector<Vec3> drag_impulse() const; // [N s] on each solid since set_forcing
+    [[nodiscard]] Vec3 wall_impulse() const;   // [N s] of walls on solids since the start
+    [[nodiscard]] Real kinetic_energy() const; // [J] of translation and spin
+    [[nodiscard]] Real elastic_energy() const; // [J]
+    [[nodiscard]] ContactTable contacts() const;
+
+    /// The exact state, as two rows of numbers whose layout is private: restoring it continues
+    /// bit-equal. Forcing is not part of it.
+    struct Snapshot {
+        std::vector<Real> reals;
+        std::vector<std::int64_t> integers;
+    };
+    [[nodiscard]] Snapshot snapshot() const;
+    void restore(const Snapshot& snapshot);
+
+private:
+    void kick_all(Real dt);
+    void move(Real kick_time, Real dt);
+    void wall_forces(Block& block, std::size_t first, std::size_t last, Real dt);
+    void pair_forces(Real dt);
+    void update_lists(Real dt, AdvanceReport& report);
+    [[nodiscard]] bool sort();
+    template <class HistoryOf>
+    void build_inner(Block& block, const HistoryOf& history_of);
+    void link_blocks();
+    [[nodiscard]] bool finite() const noexcept;
+    template <class Archive>
+    void exchange(Archive& archive);
+    template <class Visit>
+    void for_each_contact(const Visit& visit) const;
+    template <class T, class Value>
+    [[nodiscard]] std::vector<T> in_callers_order(const Value& value) const;
+
+    Population solids_;
+    std::vector<Block> blocks_;
+    std::vector<geometry::Wall> walls_;
+    std::vector<WallHistory> at_wall_;
+    ContactModel pair_model_, wall_model_;
+    Real period_; // [m], 0: none
+    int threads_;
+    Real mean_radius_, max_radius_; // [m]
+    Medium medium_ = Medium::dry;
+    Real forcing_time_ = 0; // [s] summed kicks since set_forcing
+
+    neighbors::CellGrid grid_{1, 0};
+    Vec3 frame_velocity_; // [m/s] mean at the last sort
+    Real frame_time_ = 0; // [s] since the last sort
+    Real approach_ = 0;   // [m] by which pairs may have closed since the last prune
+    Real outer_skin_ = 0, inner_skin_ = 0; // [m]
+    Real fastest_ = 0;                     // [m/s] largest speed relative to the frame, last step
+};
+
+} // namespace mpsdem::dem

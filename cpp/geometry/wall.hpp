@@ -1,0 +1,13 @@
+#pragma once
+
+#include "geometry/cylinder.hpp"
+#include "geometry/plane.hpp"
+
+#include <variant>
+
+namespace mpsdem::geometry {
+
+/// Any wall of a scene; visited once per stage, never inside a loop over particles.
+using Wall = std::variant<Plane, Cylinder>;
+
+} // namespace mpsdem::geometry
