@@ -24,7 +24,8 @@ def environment() -> dict[str, str | int]:
         "available_threads": _core.available_threads(),
         "python": platform.python_version(),
         "system": platform.platform(),
-    } | {name: version(name) for name in _LIBRARIES}
+        **{name: version(name) for name in _LIBRARIES},
+    }
 
 
 def provenance(threads: int) -> dict[str, str | int]:
@@ -39,24 +40,17 @@ def provenance(threads: int) -> dict[str, str | int]:
 
 
 def _commit() -> str:
-    """Commit of the working tree that the package is imported from, or "unknown"."""
+    """Last commit to the working tree that the package is imported from, or "unknown"."""
     folder = Path(__file__).parent
     try:
-        described = subprocess.run(
-            ["git", "describe", "--always", "--dirty", "--exclude=*"],
+        shown = subprocess.run(
+            ["git", "log", "-1", "--format=%h", "--", "."],
             cwd=folder,
             capture_output=True,
             text=True,
             timeout=5,
             check=True,
         )
-        tracked = subprocess.run(
-            ["git", "ls-files", "--error-unmatch", Path(__file__).name],
-            cwd=folder,
-            capture_output=True,
-            timeout=5,
-            check=True,
-        )
     except (OSError, subprocess.SubprocessError):
         return "unknown"
-    return described.stdout.strip() if tracked.returncode == 0 else "unknown"
+    return shown.stdout.strip() or "unknown"

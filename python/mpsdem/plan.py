@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 from mpsdem import _core
 from mpsdem._core import coupling, mps
+from mpsdem.analysis.correlations import durand_deposition_velocity
 from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
 from mpsdem.contacts import Impact, effective_modulus, rayleigh_time
 
@@ -483,7 +484,14 @@ def _numbers(case: Case) -> Iterator[Number]:
         meaning="solids lag the liquid" if stokes > 0.1 else "solids follow the liquid",
     )
     if solids.density > liquid.density and case.gravity > 0:
-        deposition = deposition_velocity(case)
+        deposition = durand_deposition_velocity(
+            pipe_diameter=bore,
+            diameter=diameter,
+            density=solids.density,
+            liquid_density=liquid.density,
+            volume_fraction=fraction,
+            gravity=case.gravity,
+        )
         moving = abs(liquid.bulk_velocity) > deposition
         yield Number(
             name="deposition velocity",
@@ -492,26 +500,6 @@ def _numbers(case: Case) -> Iterator[Number]:
             meaning=("below the bulk velocity: carried" if moving else "above it: a bed is likely")
             + " (Durand, level pipe)",
         )
-
-
-def deposition_velocity(case: Case) -> float:
-    """Bulk velocity below which solids settle to a bed in a level pipe [m/s].
-
-    Notes
-    -----
-    F_L sqrt(2 g D (s - 1)), F_L = 1.3 C^0.125 (1 - exp(-6.9 d / mm)): Durand's form with the fit of
-    Schiller and Herbich, for the mean solid fraction C; sand and gravel in water.
-
-    References
-    ----------
-    Schiller & Herbich (1991), Handbook of Dredging Engineering, section 7.
-    """
-    solids, liquid = _solids(case), case.liquid
-    assert liquid is not None
-    excess = solids.density / liquid.density - 1
-    millimetres = mean_diameter(solids) / 1e-3
-    factor = 1.3 * case.solids_fraction**0.125 * (1 - math.exp(-6.9 * millimetres))
-    return factor * math.sqrt(2 * case.gravity * 2 * case.pipe.radius * excess)
 
 
 def pipe_profile(case: Case) -> mps.PipeProfile:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import coupling, dem, geometry, mps
 from mpsdem.case import Case, Liquid, Material, Solids
@@ -199,9 +199,9 @@ class Record:
     def __call__(self, state: State, _dt: float) -> None:
         if state.step % self.steps_per_frame:
             return
-        solids: dict[str, FloatArray] = {}
-        diagnostics: dict[str, object] = {}
-        drag = np.zeros(3)
+        solids: dict[str, ArrayLike] = {}
+        diagnostics: dict[str, ArrayLike] = {}
+        drag: FloatArray = np.zeros(3)
         if state.population is not None:
             check(state, self.pipe_radius)
             solids, numbers, drag = self._solids(state)
@@ -214,17 +214,19 @@ class Record:
         state.frame_time = state.time
         state.largest_overlap = 0.0
 
-    def _solids(self, state: State) -> tuple[dict[str, FloatArray], dict[str, object], FloatArray]:
+    def _solids(
+        self, state: State
+    ) -> tuple[dict[str, ArrayLike], dict[str, ArrayLike], FloatArray]:
         """Fields, numbers, and the mean drag on all solids since the last frame [N]."""
         solids = state.solids
         velocity, mass, wall_impulse = solids.velocity, solids.mass, solids.wall_impulse
-        fields = {
+        fields: dict[str, ArrayLike] = {
             "position": solids.position,
             "velocity": velocity,
             "spin": solids.spin,
             "laps": solids.laps,
         }
-        drag = np.zeros(3)
+        drag: FloatArray = np.zeros(3)
         if self.bulk_velocity is not None:
             slip = state.liquid_velocity - velocity
             force = (mass * state.drag_rate)[:, None] * slip
@@ -239,7 +241,7 @@ class Record:
             wall = (wall_impulse - state.frame_wall_impulse) / interval
         state.frame_drag_impulse = state.drag_impulse
         state.frame_wall_impulse = wall_impulse
-        numbers = {
+        numbers: dict[str, ArrayLike] = {
             "solids_mean_velocity": np.average(velocity[:, 0], weights=mass),
             "largest_overlap": state.largest_overlap,
             "kinetic_energy": solids.kinetic_energy,

@@ -29,7 +29,7 @@ MAY_IMPORT = {
     "plot": {"case", "results", "analysis"},
     "contacts": set(),
     "info": {"_core"},
-    "plan": {"_core", "case", "contacts", "geometry"},
+    "plan": {"_core", "analysis", "case", "contacts", "geometry"},
     "stages": {"_core", "case", "contacts", "geometry", "plan", "results"},
     "simulation": {"_core", "case", "geometry", "info", "plan", "plot", "results", "stages"},
 }

@@ -149,7 +149,8 @@ def _bar(console: Console, start: float, end: float) -> Iterator[Callable[[float
     shown = 0.0
 
     with Progress(*columns, console=console) as bar:
-        task = bar.add_task("", total=end, completed=start, speed="")
+        task = bar.add_task("", total=end, speed="")
+        bar.update(task, completed=start)
 
         def show(now: float) -> None:
             nonlocal shown
