@@ -49,9 +49,9 @@ def positions_over_time(results: Results) -> Figure:
             label="all solids",
         )  # fmt: skip
         curves = (
-            ("front (95 % of the solids behind)", cluster.front),
+            ("front (95 % behind)", cluster.front),
             ("centre (median)", cluster.centre),
-            ("tail (5 % of the solids behind)", cluster.tail),
+            ("tail (5 % behind)", cluster.tail),
         )
         for (label, curve), colour in zip(curves, ACCENTS, strict=True):
             axes.plot(time, curve, color=colour, label=label)
@@ -59,7 +59,7 @@ def positions_over_time(results: Results) -> Figure:
             way = cluster.centre[0] + case.liquid.bulk_velocity * time
             axes.plot(
                 time, way, color=INK, linewidth=0.8, linestyle=(0, (2, 3)),
-                label="at the liquid's bulk velocity",
+                label="at the bulk velocity",
             )  # fmt: skip
         low, high = min(0.0, float(cluster.last.min())), float(cluster.first.max())
         axes.set(xlim=(time[0], time[-1] or 1.0), ylim=(low, max(high * 1.04, case.pipe.length)))
@@ -69,7 +69,7 @@ def positions_over_time(results: Results) -> Figure:
         axes.axhline(case.pipe.length, color=INK, linewidth=0.8, zorder=1)
         axes.text(time[-1] or 1.0, case.pipe.length, "outlet ", ha="right", va="bottom", size=8)
         axes.set(xlabel="time (s)", ylabel="distance from the inlet, laps added up (m)")
-        axes.legend(loc="upper left", frameon=True, framealpha=0.9, edgecolor="none")
+        _legend(axes)
     return figure
 
 
@@ -170,16 +170,16 @@ def pressure_gradient_over_time(results: Results) -> Figure:
         axes.plot(time, gradient, color=ACCENTS[2], linewidth=1.0)
         axes.hlines(
             mean, time[second_half][0], time[-1], color=ACCENTS[0],
-            label=f"mean of the second half: {mean:.4g} Pa/m",
+            label=f"mean of the\nsecond half:\n{mean:.4g} Pa/m",
         )  # fmt: skip
         axes.set(xlim=(time[0], time[-1] or 1.0), xlabel="time (s)")
         axes.set_ylabel("pressure loss, static head apart (Pa/m)")
-        axes.legend(loc="upper right")
+        _legend(axes)
     return figure
 
 
 def _figure(
-    results: Results, subject: str, size: tuple[float, float] = (7.2, 4.0)
+    results: Results, subject: str, size: tuple[float, float] = (8.0, 4.0)
 ) -> tuple[Figure, Axes]:
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.add_subplot()
@@ -211,4 +211,8 @@ def _over_height(
 
 def _finish_height(axes: Axes, radius: float) -> None:
     axes.set(ylim=(0, 2 * radius), ylabel="height above the bottom of the bore (m)")
+    _legend(axes)
+
+
+def _legend(axes: Axes) -> None:
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))

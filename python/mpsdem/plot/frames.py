@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import shorten
 
 import numpy as np
 
 from mpsdem.results import Results, ResultsError
 
 _HALVINGS = 4
+_LONGEST_TITLE = 44  # characters that leave room for the subject
 
 
 def chosen_frames(results: Results, times: Sequence[float] | None = None) -> list[int]:
@@ -45,5 +47,5 @@ def when(time: float) -> str:
 
 def heading(results: Results, subject: str) -> str:
     """The case's title, and what the figure shows of it."""
-    title = results.case.title
+    title = shorten(results.case.title, _LONGEST_TITLE, placeholder=" ...")
     return f"{title}: {subject}" if title else subject[:1].upper() + subject[1:]

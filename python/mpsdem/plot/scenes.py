@@ -23,7 +23,7 @@ FloatArray = NDArray[np.float64]
 _STRIP_WIDTH = 8.4  # [in] of a pipe seen from the side
 _THINNEST, _THICKEST = 0.32, 1.6  # [in] heights of such a strip
 _SECTION = 1.35  # [in] diameter of a cross-section
-_LEFT, _RIGHT, _TOP, _BOTTOM = 0.95, 1.3, 0.4, 0.6  # [in] margins
+_LEFT, _RIGHT, _TOP, _BOTTOM = 1.2, 0.9, 0.45, 0.6  # [in] margins
 
 
 def side_view(results: Results, times: Sequence[float] | None = None) -> Figure:
@@ -78,7 +78,7 @@ def silhouettes(results: Results, times: Sequence[float] | None = None) -> Figur
     """
     pipe, radius = results.case.pipe, results.solids.radius
     frames = chosen_frames(results, times)
-    bins = int(np.clip(pipe.length / radius.mean(), 50, 1000))
+    bins = int(np.clip(pipe.length / radius.mean(), 50, 400))
     with style():
         figure, strips = _strips(results, frames, "outline of the solids", 0.6)
         for axes, frame in zip(strips, frames, strict=True):
@@ -158,13 +158,13 @@ def cross_sections(results: Results, times: Sequence[float] | None = None) -> Fi
                     )
                 if column == 0:
                     axes.text(
-                        -0.5, 0.5, name, weight="bold", rotation="vertical", va="center",
+                        -0.72, 0.5, name, weight="bold", rotation="vertical", va="center",
                         transform=axes.transAxes,
                     )  # fmt: skip
                 all_axes.append(axes)
         corner = all_axes[len(names) - 1]
         _ticks_in_metres(corner, pipe.radius)
-        _heading(figure, results, "sections at front, centre and tail")
+        _heading(figure, results, f"sections at the {' / '.join(names)} of the solids")
         _speed_bar(figure, all_axes, norm, results, frames)
     return figure
 
@@ -191,17 +191,14 @@ def _strips(
         axes.set_yticks([])
         axes.tick_params(bottom=False, labelbottom=False)
         axes.text(
-            -0.012, 0.5, when(results.time[frame]), transform=axes.transAxes, ha="right",
+            -0.62 / width, 0.5, when(results.time[frame]), transform=axes.transAxes, ha="right",
             va="center", weight="bold",
         )  # fmt: skip
         strips.append(axes)
     lowest = strips[-1]
-    lowest.tick_params(bottom=True, labelbottom=True, right=True, left=False, pad=2)
-    lowest.set_xlabel("distance from the inlet x (m)")
-    lowest.set_yticks([-pipe.radius, pipe.radius])
-    lowest.yaxis.tick_right()
-    lowest.yaxis.set_label_position("right")
-    lowest.set_ylabel("z (m)", rotation=0, va="center", labelpad=-4)
+    lowest.tick_params(bottom=True, labelbottom=True)
+    lowest.set(xlabel="distance from the inlet x (m)", yticks=[-pipe.radius, pipe.radius])
+    lowest.set_ylabel("z (m)", rotation="horizontal", va="center", labelpad=-8)
     stretch = height / (width * 2 * pipe.radius / pipe.length)
     note = "" if stretch < 1.01 else f" (heights drawn {stretch:.3g} times as large as lengths)"
     _heading(figure, results, subject + note)
@@ -247,6 +244,8 @@ def _spheres(
         centre = np.concatenate([c[s] for c, s in zip(shifted, seen, strict=True)])
         radius, speed = (np.concatenate([a[s] for s in seen]) for a in (radius, speed))
     size = 2 * radius
+    left, right = axes.get_xlim()
+    points_per_metre = 72 * axes.get_window_extent().width / axes.figure.dpi / (right - left)
     spheres = EllipseCollection(
         widths=size,
         heights=size,
@@ -254,8 +253,8 @@ def _spheres(
         units="xy",
         offsets=centre,
         offset_transform=axes.transData,
-        edgecolors=(0, 0, 0, 0.55),
-        linewidths=0.25,
+        edgecolors=(0, 0, 0, 0.6),
+        linewidths=np.minimum(0.05 * size * points_per_metre, 0.4),
         cmap=SPEED_COLOURS,
         norm=norm,
         zorder=2,
@@ -284,7 +283,7 @@ def _speed_bar(
     right, bottom = max(b.x1 for b in boxes), min(b.y0 for b in boxes)
     top = max(b.y1 for b in boxes)
     height = min(top - bottom, 3.0 / up)
-    place = (right + 0.55 / across, (top + bottom - height) / 2, 0.12 / across, height)
+    place = (right + 0.15 / across, (top + bottom - height) / 2, 0.12 / across, height)
     beyond = max(float(_speed(results, frame).max()) for frame in frames) > (norm.vmax or 0) * 1.001
     bar = figure.colorbar(
         ScalarMappable(norm=norm, cmap=SPEED_COLOURS),
