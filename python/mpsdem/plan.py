@@ -127,8 +127,9 @@ class Clock:
     def length(self, step: int) -> float:
         """Length of the coupling step that is counted as `step`, from 1 on [s]."""
         frame = (step - 1) // self.steps_per_frame
-        last = frame == self.frames - 1
-        interval = self.end_time - frame * self.every if last else self.every
+        interval = min(self.every, self.end_time - frame * self.every)
+        if math.isclose(interval, self.every, rel_tol=1e-9):
+            interval = self.every  # not the round-off of a difference, so that the end may be moved
         return interval / self.steps_per_frame
 
 

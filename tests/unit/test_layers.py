@@ -31,7 +31,17 @@ MAY_IMPORT = {
     "info": {"_core"},
     "plan": {"_core", "analysis", "case", "contacts", "geometry"},
     "stages": {"_core", "case", "contacts", "geometry", "plan", "results"},
-    "simulation": {"_core", "case", "geometry", "info", "plan", "plot", "results", "stages"},
+    "simulation": {
+        "_core",
+        "analysis",
+        "case",
+        "geometry",
+        "info",
+        "plan",
+        "plot",
+        "results",
+        "stages",
+    },
 }
 ABOVE_ALL = {"validation", "cli", "__init__", "__main__"}  # these may import every layer
 

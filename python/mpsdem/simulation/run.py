@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Sequence
@@ -206,7 +207,7 @@ class Simulation:
     def _continue(self) -> tuple[State, ResultsWriter, Stopwatch]:
         path = self.directory / "checkpoint.h5"
         checkpoint = read_checkpoint(path, self.case)
-        if self.plan.clock.time(checkpoint.step) != checkpoint.time:
+        if not math.isclose(self.plan.clock.time(checkpoint.step), checkpoint.time):
             raise CheckpointError(
                 f"{path} stands at {checkpoint.time:g} s, between the steps that end_time and "
                 "output.every now lead to: give them their former values"

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mpsdem.analysis import extent
 from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import Results
 from mpsdem.stages import State
@@ -115,11 +116,12 @@ def _of_solids(plan: Plan, state: State, results: Results) -> dict[str, Any]:
     solids = results.solids
     radius = solids.radius
     x, _, z = np.moveaxis(solids.position[-1], -1, 0)
+    unwrapped = x + case.pipe.length * solids.laps[-1]
     mean_velocity = _mean(results, "solids_mean_velocity")
     concentration = float(4 / 3 * math.pi * (radius**3).sum() / case.pipe.bore_volume)
     values = {
         "solids_mean_velocity": mean_velocity,
-        "solids_front_position": float((x + case.pipe.length * solids.laps[-1]).max()),
+        "solids_front_position": float(extent(unwrapped[None]).front[0]),
         "insitu_concentration": concentration,
         "bed_height": float(np.quantile(z + radius, _BED_SHARE) + case.pipe.radius),
         "largest_overlap": float(results.diagnostics["largest_overlap"].max()),
