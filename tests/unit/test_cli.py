@@ -1,0 +1,207 @@
+"""What a user types, and what comes back: words on the terminal, an exit code, a directory."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from mpsdem import Results
+from mpsdem.cli import app
+
+PACKAGE = Path(__file__).parents[2] / "python"
+CASE = """
+title = "Short pipe"
+end_time = 0.1
+[pipe]
+radius = 0.05
+length = "50 cm"
+[liquid]
+density = 1000.0
+kinematic_viscosity = 1e-6
+bulk_velocity = 1.0
+[solids]
+diameter = "10 mm"
+density = 2500.0
+youngs_modulus = 1e7
+count = 20
+[fidelity]
+level = "quick"
+[output]
+every = 0.02
+figures = false
+"""
+
+
+def type_in(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def case_file(tmp_path):
+    path = tmp_path / "short pipe.toml"
+    path.write_text(CASE)
+    return path
+
+
+def test_run_leaves_results_and_says_where(case_file, tmp_path):
+    said = type_in("run", case_file, "-o", tmp_path / "out")
+    assert said.exit_code == 0
+    assert f"results in {tmp_path / 'out'}" in said.stdout
+    assert Results(tmp_path / "out").summary["status"] == "finished"
+
+
+def test_the_command_line_overrides_the_case(case_file, tmp_path):
+    options = ["--until", "0.04", "--fidelity", "fine", "--set", "solids.density=2700"]
+    said = type_in("run", case_file, "-o", tmp_path / "out", *options, "--set", "solids.count=5")
+    assert said.exit_code == 0, said.stderr
+    case = Results(tmp_path / "out").case
+    assert (case.end_time, case.fidelity.level) == (0.04, "fine")
+    assert (case.solids.density, case.solids.count) == (2700.0, 5)
+
+
+def test_until_leaves_out_the_figures_beyond(case_file, tmp_path):
+    case_file.write_text(CASE.replace("[output]", "[output]\ntimes = [0.02, 0.1]"))
+    assert type_in("run", case_file, "-o", tmp_path / "out", "--until", "0.05").exit_code == 0
+    assert Results(tmp_path / "out").case.output.times == (0.02,)
+
+
+def test_run_replaces_results_only_when_told_to(case_file, tmp_path):
+    command = ["run", case_file, "-o", tmp_path / "out"]
+    assert type_in(*command).exit_code == 0
+    refused = type_in(*command)
+    assert refused.exit_code == 2
+    assert "--overwrite" in refused.stderr
+    assert type_in(*command, "--overwrite").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        ("solids.denisty=2500", "did you mean 'density'?"),
+        ("solids.density=-1", "solids.density = -1"),
+        ("solids.diameter=5 kg", "solids.diameter"),
+        ("fidelity.solid_step=1", "Rayleigh time"),
+        ("solids.diameter=0.2", "bore"),
+        ("end_time=0", "end_time"),
+    ],
+)
+@pytest.mark.parametrize("command", ["run", "explain"])
+def test_bad_input_is_one_message_without_a_traceback(command, option, told, case_file):
+    said = type_in(command, case_file, "--set", option)
+    assert said.exit_code == 2
+    assert told in said.stderr
+    assert "Traceback" not in said.stderr
+    assert said.stdout == ""
+
+
+@pytest.mark.parametrize("command", ["run", "explain", "resume", "report"])
+def test_a_path_where_nothing_is_is_named(command, tmp_path):
+    said = type_in(command, tmp_path / "nothing")
+    assert said.exit_code == 2
+    assert "nothing" in said.stderr
+
+
+def test_a_diverged_run_exits_with_one(case_file, tmp_path):
+    case_file.write_text(CASE[: CASE.index("[liquid]")] + CASE[CASE.index("[solids]") :])
+    settings = [
+        "solids.contact=linear_spring",
+        "solids.impact_speed=0.01",
+        "solids.arrangement.velocity=[0.0, 1e4, 0.0]",
+    ]
+    options = [word for setting in settings for word in ("--set", setting)]
+    said = type_in("run", case_file, "-o", tmp_path / "out", *options)
+    assert said.exit_code == 1
+    assert "diverged" in said.stderr
+    assert "Traceback" not in said.stderr
+
+
+def test_explain_names_stages_limits_and_cost(case_file):
+    said = type_in("explain", case_file)
+    assert said.exit_code == 0
+    for word in ("FindVoidFraction", "Rayleigh time", "(binds)", "Reynolds number", "memory"):
+        assert word in said.stdout
+
+
+def test_info_names_version_compiler_and_cholmod():
+    said = type_in("info")
+    assert said.exit_code == 0
+    for word in ("version", "compiler", "simd", "cholmod", "available_threads", "numpy"):
+        assert word in said.stdout
+
+
+def test_report_draws_the_figures_of_a_run_again(case_file, tmp_path):
+    type_in("run", case_file, "-o", tmp_path / "out")
+    said = type_in("report", tmp_path / "out")
+    assert said.exit_code == 0
+    drawn = [Path(line) for line in said.stdout.split()]
+    assert len(drawn) > 3
+    assert all(path.exists() for path in drawn)
+
+
+def start(*arguments):
+    """Run `mpsdem` as a process of its own."""
+    environment = os.environ | {"PYTHONPATH": str(PACKAGE)}
+    command = [sys.executable, "-m", "mpsdem", *map(str, arguments)]
+    return subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def wait_until(condition, seconds=60.0):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.01)
+
+
+def checkpoint_time(directory):
+    try:
+        with h5py.File(directory / "checkpoint.h5", locking=False) as file:
+            return file.attrs["time"]
+    except OSError:
+        return -1.0
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_ends_the_run_after_a_whole_step_with_its_own_exit_code(
+    number, code, case_file, tmp_path
+):
+    out = tmp_path / "out"
+    settings = ["--until", "1000", "--set", "output.checkpoint_every=0.1"]
+    process = start("run", case_file, "-o", out, *settings)
+    wait_until(lambda: checkpoint_time(out) > 0)
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == code
+    assert f"mpsdem resume {out}" in said
+    assert "Traceback" not in said
+    with Results(out) as results:
+        assert results.summary["status"] == "interrupted"
+        assert results.summary["time"] == checkpoint_time(out) >= results.time[-1] > 0
+
+
+def test_a_killed_run_resumes_to_the_numbers_of_one_that_was_left_alone(case_file, tmp_path):
+    alone, killed = tmp_path / "alone", tmp_path / "killed"
+    settings = ["--until", "4", "--set", "output.checkpoint_every=0.1"]
+    process = start("run", case_file, "-o", killed, *settings)
+    wait_until(lambda: checkpoint_time(killed) > 0.25)
+    process.kill()
+    process.communicate(timeout=60)
+    assert process.returncode == -signal.SIGKILL
+    assert 0 < Results(killed).time[-1] < 4  # readable, and not at its end
+
+    assert type_in("resume", killed).exit_code == 0
+    assert type_in("run", case_file, "-o", alone, *settings).exit_code == 0
+    one, other = Results(alone), Results(killed)
+    for name in ("position", "velocity", "spin", "laps"):
+        assert np.array_equal(getattr(one.solids, name)[:], getattr(other.solids, name)[:]), name
+    took = {"wall_seconds", "cpu_seconds"}
+    for name in one.summary.keys() - took:
+        assert one.summary[name] == other.summary[name], name
