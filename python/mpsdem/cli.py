@@ -152,6 +152,22 @@ def _plain_errors() -> Iterator[None]:
         raise typer.Exit(2) from None
 
 
+@contextmanager
+def _log_on_stderr() -> Iterator[None]:
+    """Log to where a progress bar would be, if there is no terminal to show one."""
+    if _err.is_terminal:
+        yield
+        return
+    log = logging.getLogger("mpsdem")
+    handler = logging.StreamHandler(sys.stderr)
+    handler.addFilter(lambda record: record.levelno < logging.ERROR)  # errors are told on their own
+    log.addHandler(handler)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+
+
 def _complain(error: Exception) -> None:
     _err.print("[bold red]error:[/]", end=" ")
     _err.print(str(error), soft_wrap=True, markup=False, highlight=False)
@@ -178,11 +194,8 @@ def _table(*headings: str) -> Table:
 
 def _finish(simulation: Simulation) -> None:
     """Run, and say where what was found."""
-    if not _err.is_terminal:
-        handler = logging.StreamHandler(sys.stderr)
-        handler.addFilter(lambda record: record.levelno < logging.ERROR)  # told by _complain
-        logging.getLogger("mpsdem").addHandler(handler)
-    results = simulation.run()
+    with _log_on_stderr():
+        results = simulation.run()
     summary = results.summary
     table = _table()
     for name, unit in _SHOWN.items():
