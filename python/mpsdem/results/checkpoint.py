@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mpsdem.case import Case, CaseError
 from mpsdem.results.errors import CheckpointError
-from mpsdem.results.files import new_hdf5
+from mpsdem.results.files import new_hdf5, reading
 
 FORMAT = "mpsdem checkpoint"
 FORMAT_VERSION = 1
@@ -102,25 +102,20 @@ def read_checkpoint(path: str | os.PathLike[str], case: Case | None = None) -> C
     path = Path(path)
     if not path.is_file():
         raise CheckpointError(f"no checkpoint at {path}: the run must start from the beginning")
-    try:
-        with h5py.File(path, "r", locking=False) as file:
-            if file.attrs.get("format") != FORMAT:
-                raise CheckpointError(f"{path} is an HDF5 file, but not a checkpoint of mpsdem")
-            if file.attrs["format_version"] != FORMAT_VERSION:
-                raise CheckpointError(
-                    f"{path} has format version {file.attrs['format_version']}, this mpsdem reads "
-                    f"{FORMAT_VERSION}: continue with the version that wrote it"
-                )
-            checkpoint = Checkpoint(
-                case_toml=str(file["case"].asstr()[()]),
-                time=float(file.attrs["time"]),
-                step=int(file.attrs["step"]),
-                state=_read(file["state"]),
+    with reading(path, CheckpointError), h5py.File(path, "r", locking=False) as file:
+        if file.attrs.get("format") != FORMAT:
+            raise CheckpointError(f"{path} is an HDF5 file, but not a checkpoint of mpsdem")
+        if file.attrs["format_version"] != FORMAT_VERSION:
+            raise CheckpointError(
+                f"{path} has format version {file.attrs['format_version']}, this mpsdem reads "
+                f"{FORMAT_VERSION}: continue with the version that wrote it"
             )
-    except (OSError, KeyError, RuntimeError) as error:
-        if isinstance(error, CheckpointError):
-            raise
-        raise CheckpointError(f"{path} is damaged or not a checkpoint: {error}") from error
+        checkpoint = Checkpoint(
+            case_toml=str(file["case"].asstr()[()]),
+            time=float(file.attrs["time"]),
+            step=int(file.attrs["step"]),
+            state=_read(file["state"]),
+        )
     if case is not None:
         _refuse_another_case(path, checkpoint, case)
     return checkpoint

@@ -44,6 +44,17 @@ def writing(path: Path) -> Iterator[None]:
         raise output_error(path, error) from error
 
 
+@contextmanager
+def reading(path: Path, refusal: type[Exception]) -> Iterator[None]:
+    """Turn whatever a damaged file at `path` makes HDF5 say into a `refusal`."""
+    try:
+        yield
+    except (refusal, OutputError):
+        raise
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        raise refusal(f"{path} is damaged: {error}") from error
+
+
 def make_directory(path: Path) -> Path:
     """Create `path` with its parents where absent, or raise `OutputError`."""
     with writing(path):

@@ -100,15 +100,12 @@ class Results:
     @property
     def case_toml(self) -> str:
         """The case as TOML text, every default written out."""
-        return str(self._run.dataset("case").asstr()[()])
+        return self._run.text("case")
 
     @property
     def provenance(self) -> dict[str, Any]:
         """Where the numbers come from: version, compiler, threads and the like."""
-        return {
-            name: value.item() if isinstance(value, np.generic) else value
-            for name, value in self._run.dataset("provenance").attrs.items()
-        }
+        return self._run.attributes("provenance")
 
     @property
     def summary(self) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from numpy.typing import DTypeLike, NDArray
 
 from mpsdem.results.errors import ResultsError
+from mpsdem.results.files import reading
 
 FORMAT = "mpsdem results"
 FORMAT_VERSION = 1
@@ -46,19 +47,17 @@ def open_results(path: Path) -> h5py.File:
     except OSError as error:
         raise ResultsError(f"{path} is damaged or not a results file: {error}") from error
     try:
-        _refuse_what_is_not_ours(path, file)
-    except BaseException:
+        with reading(path, ResultsError):
+            _refuse_what_is_not_ours(path, file)
+    except ResultsError:
         file.close()
         raise
     return file
 
 
 def _refuse_what_is_not_ours(path: Path, file: h5py.File) -> None:
-    try:
-        kind, version = file.attrs.get("format"), file.attrs.get("format_version", 0)
-        missing = [name for name in ("time", "case", "provenance") if name not in file]
-    except (OSError, RuntimeError, KeyError) as error:
-        raise ResultsError(f"{path} is damaged: {error}") from error
+    kind, version = file.attrs.get("format"), file.attrs.get("format_version", 0)
+    missing = [name for name in ("time", "case", "provenance") if name not in file]
     if kind != FORMAT:
         raise ResultsError(f"{path} is an HDF5 file of another program, not mpsdem results")
     if version > FORMAT_VERSION:
@@ -98,9 +97,8 @@ class StoredRun:
     def __init__(self, path: Path) -> None:
         self.path = path
         # Opened again after the frames are counted: only then does it surely hold all of them.
-        self.file = open_results(path)
-        self.frames = len(self.dataset("time"))
-        self.file.close()
+        with open_results(path) as file, reading(path, ResultsError):
+            self.frames = len(file["time"])
         self.file = open_results(path)
 
     def __contains__(self, name: str) -> bool:
@@ -108,21 +106,32 @@ class StoredRun:
 
     def dataset(self, name: str) -> h5py.Dataset:
         """Find a dataset, or raise `ResultsError`."""
-        try:
+        with reading(self.path, ResultsError):
+            if name not in self.file:
+                raise ResultsError(f"{self.path} holds no {name}")
             return self.file[name]
-        except KeyError:
-            raise ResultsError(f"{self.path} holds no {name}") from None
 
     def read(self, name: str, index: Index = ...) -> NDArray[Any]:
         """Read a dataset, or a part of it, or raise `ResultsError`."""
-        try:
+        with reading(self.path, ResultsError):
             return np.asarray(self.dataset(name)[index])
-        except (OSError, RuntimeError) as error:
-            raise ResultsError(f"{self.path} is damaged: {error}") from error
 
     def read_frames(self, name: str) -> NDArray[Any]:
         """Read all whole frames of a dataset."""
         return self.read(name, slice(0, self.frames))
+
+    def text(self, name: str) -> str:
+        """Read a text."""
+        with reading(self.path, ResultsError):
+            return str(self.dataset(name).asstr()[()])
+
+    def attributes(self, name: str) -> dict[str, Any]:
+        """Read the attributes of a group or dataset as plain Python values."""
+        with reading(self.path, ResultsError):
+            return {
+                key: value.item() if isinstance(value, np.generic) else value
+                for key, value in self.dataset(name).attrs.items()
+            }
 
 
 class Field(NDArrayOperatorsMixin):
@@ -142,11 +151,11 @@ class Field(NDArrayOperatorsMixin):
     def __init__(self, run: StoredRun, name: str) -> None:
         self._run = run
         self._name = name
-        dataset = run.dataset(name)
+        dataset, about = run.dataset(name), run.attributes(name)
         self.shape: tuple[int, ...] = (run.frames, *dataset.shape[1:])
         self.dtype: np.dtype[Any] = dataset.dtype
-        self.unit = str(dataset.attrs["unit"])
-        self.description = str(dataset.attrs["description"])
+        self.unit = str(about["unit"])
+        self.description = str(about["description"])
 
     @property
     def ndim(self) -> int:

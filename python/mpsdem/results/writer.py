@@ -23,6 +23,7 @@ from mpsdem.results.files import (
     make_directory,
     new_hdf5,
     output_error,
+    reading,
     write_atomically,
     writing,
 )
@@ -125,28 +126,15 @@ class ResultsWriter:
         """
         writer = cls.__new__(cls)
         writer._path = Path(directory) / RESULTS
-        draft = writer._draft
-        with open_results(writer._path) as old:
-            try:
-                keep = int(np.searchsorted(old["time"][()], time * (1 + 1e-12), side="right"))
-                with new_hdf5(draft) as new:
-                    series = _copy_all_but_frames(old, new)
-                    if case is not None:
-                        new["case"][()] = case.to_toml()
-                writer._open()
-                writer._reserve(sum(old[path].id.get_storage_size() for path in series))
-                for path in series:
-                    _copy_frames(old[path], writer._series[path], keep)
-                writer._last_time = float(old["time"][keep - 1]) if keep else -np.inf
-                writer._frames = keep
-                writer._publish()
-            except OutputError:
-                writer.close()
-                with suppress(OSError):
-                    draft.unlink()
-                raise
-            except (OSError, RuntimeError, KeyError) as error:
-                raise ResultsError(f"{writer._path} is damaged: {error}") from error
+        writer._file = None
+        try:
+            with open_results(writer._path) as old, reading(writer._path, ResultsError):
+                writer._continue(old, time, case)
+        except BaseException:
+            writer.close()
+            with suppress(OSError):
+                writer._draft.unlink()
+            raise
         if case is not None:
             write_atomically(writer._path.with_name(CASE), case.to_toml().encode())
         return writer
@@ -239,6 +227,19 @@ class ResultsWriter:
         self._open()
         self._publish()
 
+    def _continue(self, old: h5py.File, time: float, case: WritesToml | None) -> None:
+        self._frames = int(np.searchsorted(old["time"], time * (1 + 1e-12), side="right"))
+        self._last_time = float(old["time"][self._frames - 1]) if self._frames else -np.inf
+        with new_hdf5(self._draft) as new:
+            _copy_all_but_frames(old, new)
+            if case is not None:
+                new["case"][()] = case.to_toml()
+        self._open()
+        self._reserve(sum(old[path].id.get_storage_size() for path in self._series))
+        for path, dataset in self._series.items():
+            _copy_frames(old[path], dataset, self._frames)
+        self._publish()
+
     def _open(self) -> None:
         self._file = h5py.File(self._draft, "r+", libver="latest", locking=False)
         self._series: dict[str, h5py.Dataset] = {p: self._file[p] for p in _series_of(self._file)}
@@ -247,6 +248,7 @@ class ResultsWriter:
         assert self._file is not None
         self._file.swmr_mode = True
         self._flush()
+        os.fsync(self._file.id.get_vfd_handle())
         self._draft.replace(self._path)
 
     def _write(self, path: str, value: ArrayLike) -> None:
@@ -322,7 +324,7 @@ def _series_of(file: h5py.File) -> list[str]:
     return sorted(paths, key=lambda path: path == "time")
 
 
-def _copy_all_but_frames(old: h5py.File, new: h5py.File) -> list[str]:
+def _copy_all_but_frames(old: h5py.File, new: h5py.File) -> None:
     new.attrs.update(old.attrs)
     series = _series_of(old)
 
@@ -336,7 +338,6 @@ def _copy_all_but_frames(old: h5py.File, new: h5py.File) -> list[str]:
             new[path].attrs.update(item.attrs)
 
     old.visititems(visit)
-    return series
 
 
 def _copy_frames(old: h5py.Dataset, new: h5py.Dataset, frames: int) -> None:
