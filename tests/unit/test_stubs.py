@@ -2,23 +2,32 @@
 
 import subprocess
 import sys
+from difflib import unified_diff
 from pathlib import Path
+
+import pytest
 
 import mpsdem
 from mpsdem import _core
 
 REPOSITORY = Path(__file__).parents[2]
 STUBS = REPOSITORY / "python" / "mpsdem" / "_core"
-REGENERATE = "python scripts/stubs.py"
+
+
+def lines(stubs: Path) -> list[str]:
+    return [line for stub in sorted(stubs.glob("*.pyi")) for line in stub.read_text().splitlines()]
 
 
 def test_the_stubs_match_the_compiled_module(tmp_path):
     script = REPOSITORY / "scripts" / "stubs.py"
     made = subprocess.run([sys.executable, script, tmp_path], capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
-    fresh = {stub.name: stub.read_text() for stub in (tmp_path / "mpsdem" / "_core").iterdir()}
-    committed = {stub.name: stub.read_text() for stub in STUBS.glob("*.pyi")}
-    assert committed == fresh, f"the stubs are out of date; regenerate them with: {REGENERATE}"
+    fresh = lines(tmp_path / "mpsdem" / "_core")
+    if changes := "\n".join(unified_diff(lines(STUBS), fresh, "committed", "fresh", lineterm="")):
+        pytest.fail(
+            f"Stubs are out of date; regenerate them: python scripts/stubs.py\n{changes}",
+            pytrace=False,
+        )
 
 
 def test_the_stub_folder_does_not_shadow_the_compiled_module():
