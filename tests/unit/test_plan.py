@@ -107,6 +107,22 @@ def test_a_step_above_its_limit_is_refused_and_the_limit_named(fidelity, limit):
         make_plan(case(fidelity=fidelity))
 
 
+def test_a_viscoelastic_contact_that_nothing_closes_is_refused():
+    still = case(liquid=None, gravity=0.0, solids={"contact": "hertz_viscoelastic"})
+    with pytest.raises(CaseError, match="take 'hertz_mindlin'"):
+        make_plan(still)
+
+
+def test_solids_that_meet_head_on_are_judged_by_their_closing_speed():
+    pair = {
+        "kind": "list",
+        "positions": [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]],
+        "velocities": [[3.0, 0.0, 0.0], [-3.0, 0.0, 0.0]],
+    }
+    plan = make_plan(case(liquid=None, gravity=0.0, solids={"arrangement": pair}))
+    assert plan.impact_speed == 6.0
+
+
 def test_a_step_that_is_given_is_not_exceeded():
     plan = make_plan(case(fidelity={"solid_step": 1e-6, "coupling_step": 1e-4}))
     assert 0.99e-6 < plan.solid_step.value <= 1e-6

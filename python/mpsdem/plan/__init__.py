@@ -1,0 +1,41 @@
+"""The plan: what a case requires, and why. Pure functions of a case; nothing is run."""
+
+from mpsdem.plan.clock import Clock
+from mpsdem.plan.limits import Limit, Step
+from mpsdem.plan.plan import SOFT, Estimate, Number, Plan, Planned, make_plan
+from mpsdem.plan.scales import (
+    DRAG_LAWS,
+    DragLaw,
+    clear_gradient,
+    gravity,
+    impact_speed,
+    impacts,
+    materials,
+    mean_diameter,
+    pipe_profile,
+    spring_stiffness,
+    terminal_velocity,
+)
+
+__all__ = [
+    "DRAG_LAWS",
+    "SOFT",
+    "Clock",
+    "DragLaw",
+    "Estimate",
+    "Limit",
+    "Number",
+    "Plan",
+    "Planned",
+    "Step",
+    "clear_gradient",
+    "gravity",
+    "impact_speed",
+    "impacts",
+    "make_plan",
+    "materials",
+    "mean_diameter",
+    "pipe_profile",
+    "spring_stiffness",
+    "terminal_velocity",
+]

@@ -1,0 +1,159 @@
+"""How long a step may be, and what limits it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from mpsdem.case import Case, CaseError, Problem
+from mpsdem.contacts import rayleigh_time
+from mpsdem.plan.scales import (
+    drag_rate,
+    impacts,
+    materials,
+    require_speed,
+    solids_of,
+    spring_stiffness,
+    terminal_velocity,
+)
+
+# A step given by the user may take this share of a time that it has to resolve [-]: the restitution
+# is then off by 0.014, and bulk flow still unmoved (512 spheres collapsing in a cylinder).
+_LARGEST_SHARE = 0.5
+# Errors were measured where a collision lasts three Rayleigh times (1 m/s, E = 1e8 Pa, d = 20 mm);
+# a faster one is shorter, and is resolved by as many steps.
+_COLLISION_WORTH = 1 / 3
+_COUPLING_SHARE = 0.1  # [-] of the times over which the forces on a solid change
+SOLID_RATE = 2e7  # solids x steps per second on one thread in a dense bed; in the open 1.4e8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """The longest step [s] that something allows."""
+
+    name: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Scale:
+    """A time [s] that a step has to resolve, and how much of it counts [-]."""
+
+    name: str
+    time: float
+    worth: float = 1.0
+
+    @property
+    def limit(self) -> float:
+        return self.worth * self.time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """A time step [s], at or below the smallest of its limits."""
+
+    value: float
+    limits: tuple[Limit, ...]
+
+    @property
+    def binding(self) -> Limit:
+        """The smallest limit."""
+        return min(self.limits, key=lambda limit: limit.value)
+
+
+def solid_limits(case: Case, speed: float) -> tuple[Limit, ...]:
+    """Limits of the step of the solids, which collide at `speed` [m/s]; none without solids.
+
+    Raises
+    ------
+    CaseError
+        If ``fidelity.solid_step`` is too long, or the contacts need a speed and there is none.
+    """
+    if case.solids is None:
+        return ()
+    return _limits(
+        "solid_step",
+        given=case.fidelity.solid_step,
+        share=case.fidelity.resolved_rayleigh_fraction,
+        scales=tuple(_contact_scales(case, speed)),
+    )
+
+
+def _contact_scales(case: Case, speed: float) -> Iterator[_Scale]:
+    """What a step of the solids has to resolve."""
+    solids = solids_of(case)
+    diameter = solids.smallest_diameter
+    pair, wall = impacts(case, diameter=diameter, speed=speed)
+    collision = f"a collision at {speed:.3g} m/s"
+    if solids.contact == "linear_spring":
+        between, at_wall = spring_stiffness(case, speed)
+        duration = min(pair.on_spring(between)[1], wall.on_spring(at_wall)[1])
+        yield _Scale(name=collision, time=duration, worth=_COLLISION_WORTH)
+        if solids.normal_damping:
+            time = 2 * pair.reduced_mass / solids.normal_damping
+            yield _Scale(name="the damping time 2 m*/c of a pair", time=time)
+        return
+    if solids.contact == "hertz_viscoelastic":
+        require_speed(speed, "solids.contact", "take 'hertz_mindlin'")
+    rayleigh = min(
+        rayleigh_time(
+            diameter=diameter,
+            density=solids.density,
+            youngs_modulus=material.youngs_modulus,
+            poisson_ratio=material.poisson_ratio,
+        )
+        for material in materials(case)
+    )
+    yield _Scale(name="the smallest solid's Rayleigh time", time=rayleigh)
+    duration = min(pair.duration, wall.duration)
+    yield _Scale(name=collision, time=duration, worth=_COLLISION_WORTH)
+
+
+def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]:
+    """Limits of the time between two looks at the liquid, after those of the solids.
+
+    Raises
+    ------
+    CaseError
+        If ``fidelity.coupling_step`` is too long.
+    """
+    every = Limit(name="output.every", value=case.output.every)
+    if case.solids is None:
+        return (every,)
+    work = SOLID_RATE / case.solids_count * min(limit.value for limit in of_solids)
+    prompt = Limit(name="a second of computing, so that a signal is obeyed", value=work)
+    scales = []
+    if case.liquid is not None:
+        diameter = case.solids.smallest_diameter
+        slip = max(abs(case.liquid.bulk_velocity), terminal_velocity(case))
+        relaxation = 1 / drag_rate(case, diameter=diameter, slip=slip)
+        scales = [_Scale(name=f"the drag's relaxation time at {slip:.3g} m/s", time=relaxation)]
+        if slip > 0:
+            crossing = f"the time to cross a diameter at {slip:.3g} m/s"
+            scales.append(_Scale(name=crossing, time=diameter / slip))
+    given = case.fidelity.coupling_step
+    limits = _limits("coupling_step", given=given, share=_COUPLING_SHARE, scales=scales)
+    return (*limits, every, prompt)
+
+
+def _limits(
+    name: str, *, given: float | None, share: float, scales: Sequence[_Scale]
+) -> tuple[Limit, ...]:
+    """Limit a step to a share of each time, or to what is given where that is not too long."""
+    if given is None:
+        return tuple(
+            Limit(name=f"{share * scale.worth:.3g} of {scale.name}", value=share * scale.limit)
+            for scale in scales
+        )
+    shortest = min(scales, key=lambda scale: scale.limit, default=None)
+    if shortest is not None and given > (longest := _LARGEST_SHARE * shortest.limit):
+        share = _LARGEST_SHARE * shortest.worth
+        problem = Problem(
+            field=f"fidelity.{name}",
+            value=given,
+            unit="s",
+            rule=f"must be <= {longest:.4g} s, {share:.3g} of {shortest.name}",
+            remedy="leave it out, and the plan chooses",
+        )
+        raise CaseError([problem])
+    return (Limit(name=f"fidelity.{name}, as given", value=given),)

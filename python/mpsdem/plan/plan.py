@@ -1,0 +1,302 @@
+"""The plan: what a case requires, and why. Pure functions of a case; nothing is run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from mpsdem import _core
+from mpsdem.analysis.correlations import durand_deposition_velocity
+from mpsdem.case import Case
+from mpsdem.plan.clock import Clock
+from mpsdem.plan.limits import SOLID_RATE, Limit, Step, coupling_limits, solid_limits
+from mpsdem.plan.scales import (
+    drag_rate,
+    impact_speed,
+    impacts,
+    mean_diameter,
+    pipe_profile,
+    smoothing_radius,
+    solids_of,
+    spring_stiffness,
+    terminal_velocity,
+)
+
+_DILUTE = 1e-3  # [-] solid fraction above which the liquid notices the solids
+SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
+_SERIAL = 5000  # solids up to which threads cost more than they gain
+_SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
+_CALL_TIME = 1e-4  # [s] one turn of the time loop
+_SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
+_BASE_BYTES = 150_000_000  # memory of the program before any solid
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Number:
+    """A number that decides something, and what it decides."""
+
+    name: str
+    value: float
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Planned:
+    """A stage of the time step, or one left out, and the reason."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """What the run will take, within a factor of about two."""
+
+    wall_seconds: float
+    memory_bytes: float
+    disk_bytes: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """The shortest list of stages that a case requires, and all that was decided with it.
+
+    Attributes
+    ----------
+    case : Case
+        What is planned for.
+    numbers : tuple of Number
+        The dimensionless numbers that decided.
+    stages, left_out : tuple of Planned
+        In the order of the time step.
+    impact_speed : float
+        Speed of the collisions that the contacts are judged by [m/s]; 0 without solids.
+    solid_step : Step or None
+        Step of the solids; None without any.
+    coupling_step : Step
+        Time between two looks at the liquid.
+    clock : Clock
+        Both steps, in whole numbers.
+    threads : int
+        Threads of the kernels.
+    estimate : Estimate
+        Time, memory and disk.
+    warnings : tuple of str
+        What the user should know before trusting the results.
+    """
+
+    case: Case
+    numbers: tuple[Number, ...]
+    stages: tuple[Planned, ...]
+    left_out: tuple[Planned, ...]
+    impact_speed: float
+    solid_step: Step | None
+    coupling_step: Step
+    clock: Clock
+    threads: int
+    estimate: Estimate
+    warnings: tuple[str, ...]
+
+    @property
+    def smoothing_radius(self) -> float:
+        """Radius over which the void fraction is averaged [m]; 0 without solids."""
+        return smoothing_radius(self.case)
+
+
+def make_plan(case: Case) -> Plan:
+    """Decide what a case requires.
+
+    Raises
+    ------
+    CaseError
+        If a step given in ``fidelity`` exceeds its limit, or a limit cannot be found.
+    """
+    speed = impact_speed(case)
+    of_solids = solid_limits(case, speed)
+    of_coupling = coupling_limits(case, of_solids)
+    steps_per_frame = _whole(case.output.every / _shortest(of_coupling))
+    coupling_step = case.output.every / steps_per_frame
+    substeps = _whole(coupling_step / _shortest(of_solids)) if of_solids else 0
+    clock = Clock(
+        end_time=case.end_time,
+        every=case.output.every,
+        steps_per_frame=steps_per_frame,
+        substeps=substeps,
+    )
+    threads = case.fidelity.threads or (
+        1 if case.solids_count < _SERIAL else _core.available_threads()
+    )
+    return Plan(
+        case=case,
+        numbers=tuple(_numbers(case)),
+        stages=tuple(_stages(case, clock)),
+        left_out=tuple(_left_out(case)),
+        impact_speed=speed,
+        solid_step=Step(value=coupling_step / substeps, limits=of_solids) if of_solids else None,
+        coupling_step=Step(value=coupling_step, limits=of_coupling),
+        clock=clock,
+        threads=threads,
+        estimate=_estimate(case, clock, threads),
+        warnings=tuple(_warnings(case, speed)),
+    )
+
+
+def _shortest(limits: Iterable[Limit]) -> float:
+    return min(limit.value for limit in limits)
+
+
+def _whole(ratio: float) -> int:
+    """Smallest whole number of steps that does the work of `ratio` steps, round-off forgiven."""
+    return max(1, math.ceil(ratio * (1 - 1e-12)))
+
+
+def _numbers(case: Case) -> Iterator[Number]:
+    pipe, liquid, solids = case.pipe, case.liquid, case.solids
+    bore = 2 * pipe.radius
+    if liquid is not None:
+        reynolds = abs(liquid.bulk_velocity) * bore / liquid.kinematic_viscosity
+        regime = "laminar" if pipe_profile(case).laminar else "turbulent"
+        yield Number(name="Reynolds number of the pipe", value=reynolds, unit="", meaning=regime)
+    if solids is None:
+        return
+    diameter = mean_diameter(solids)
+    fraction = case.solids_fraction
+    yield Number(
+        name="diameter of the solids over the bore",
+        value=diameter / bore,
+        unit="",
+        meaning="coarse: the bore sees single solids" if diameter > 0.02 * bore else "fine",
+    )
+    yield Number(
+        name="mean solid fraction",
+        value=fraction,
+        unit="",
+        meaning="the liquid notices the solids" if fraction > _DILUTE else "dilute",
+    )
+    if liquid is None:
+        return
+    settling = terminal_velocity(case)
+    yield Number(
+        name="terminal velocity",
+        value=settling,
+        unit="m/s",
+        meaning="of a lone solid in the liquid at rest",
+    )
+    yield Number(
+        name="Reynolds number of the solids",
+        value=settling * diameter / liquid.kinematic_viscosity,
+        unit="",
+        meaning="at the terminal velocity",
+    )
+    slip = max(abs(liquid.bulk_velocity), settling)
+    stokes = abs(liquid.bulk_velocity) / bore / drag_rate(case, diameter=diameter, slip=slip)
+    yield Number(
+        name="Stokes number",
+        value=stokes,
+        unit="",
+        meaning="solids lag the liquid" if stokes > 0.1 else "solids follow the liquid",
+    )
+    if solids.density > liquid.density and case.gravity > 0:
+        deposition = durand_deposition_velocity(
+            pipe_diameter=bore,
+            diameter=diameter,
+            density=solids.density,
+            liquid_density=liquid.density,
+            volume_fraction=fraction,
+            gravity=case.gravity,
+        )
+        moving = abs(liquid.bulk_velocity) > deposition
+        yield Number(
+            name="deposition velocity",
+            value=deposition,
+            unit="m/s",
+            meaning=("below the bulk velocity: carried" if moving else "above it: a bed is likely")
+            + " (Durand, level pipe)",
+        )
+
+
+def _needs_void_fraction(case: Case) -> bool:
+    return case.solids_count > 1 and solids_of(case).drag != "schiller_naumann"
+
+
+def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
+    solids, liquid = case.solids, case.liquid
+    if solids is not None:
+        if liquid is not None:
+            flow = "parabola" if pipe_profile(case).laminar else "turbulent profile"
+            yield Planned(name="SampleLiquid", reason=f"the liquid is a prescribed {flow}")
+            if _needs_void_fraction(case):
+                reason = f"the drag law {solids.drag} depends on the share of liquid at a solid"
+                yield Planned(name="FindVoidFraction", reason=reason)
+            yield Planned(name="DragForce", reason=f"the liquid carries the solids: {solids.drag}")
+        reason = f"{case.solids_count} solids, {solids.contact}: {clock.substeps} steps a turn"
+        yield Planned(name="AdvanceSolids", reason=reason)
+    reason = f"{clock.frames + 1} frames, one every {clock.every:g} s"
+    yield Planned(name="Record", reason=reason)
+
+
+def _left_out(case: Case) -> Iterator[Planned]:
+    solids, liquid = case.solids, case.liquid
+    if liquid is None:
+        yield Planned(name="liquid", reason="the case has no [liquid]: dry")
+    else:
+        reason = "the profile is prescribed, and steady"
+        yield Planned(name="PredictLiquid, ProjectPressure", reason=reason)
+    if solids is None:
+        yield Planned(name="solids", reason="the case has no [solids]: clear liquid")
+        return
+    if liquid is not None:
+        reason = "a prescribed liquid cannot yield; the pressure gradient counts the solids' drag"
+        yield Planned(name="ExchangeMomentum", reason=reason)
+        if not _needs_void_fraction(case):
+            alone = "a lone solid has no neighbors"
+            reason = alone if case.solids_count == 1 else f"{solids.drag} takes no notice of it"
+            yield Planned(name="FindVoidFraction", reason=reason)
+    if solids.rolling_friction == 0 == solids.at_wall.rolling_friction:
+        yield Planned(name="rolling resistance", reason="solids.rolling_friction = 0")
+
+
+def _estimate(case: Case, clock: Clock, threads: int) -> Estimate:
+    count, steps = case.solids_count, clock.steps
+    frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
+    return Estimate(
+        wall_seconds=(
+            count * steps * (clock.substeps / SOLID_RATE / threads + _SAMPLE_TIME)
+            + steps * _CALL_TIME
+        ),
+        memory_bytes=_BASE_BYTES + count * _SOLID_BYTES,
+        disk_bytes=frame_bytes * (clock.frames + 1),
+    )
+
+
+def _warnings(case: Case, speed: float) -> Iterator[str]:
+    solids, liquid = case.solids, case.liquid
+    if liquid is not None:
+        reynolds = abs(liquid.bulk_velocity) * 2 * case.pipe.radius / liquid.kinematic_viscosity
+        if 2300 <= reynolds <= 4000:
+            yield f"the flow is intermittent at a Reynolds number of {reynolds:.0f}; no law holds"
+    if solids is None:
+        return
+    if liquid is not None and case.solids_fraction > _DILUTE:
+        yield (
+            f"the mean solid fraction {case.solids_fraction:.2g} is above {_DILUTE:g}: "
+            "a real liquid would yield to the solids, so they are carried too fast here"
+        )
+    pair, wall = impacts(case, diameter=solids.largest_diameter, speed=speed)
+    overlap = max(pair.overlap, wall.overlap)
+    if solids.contact == "linear_spring":
+        pair_stiffness, wall_stiffness = spring_stiffness(case, speed)
+        overlap = max(pair.on_spring(pair_stiffness)[0], wall.on_spring(wall_stiffness)[0])
+    share = overlap / (solids.largest_diameter / 2)
+    if share > SOFT:
+        yield (
+            f"a collision at {speed:.3g} m/s overlaps by {share:.0%} of the radius: "
+            "raise fidelity.stiffness_factor or solids.youngs_modulus"
+        )
+    if liquid is not None and smoothing_radius(case) < 1.5 * solids.largest_diameter:
+        yield (
+            f"fidelity.smoothing_radius = {smoothing_radius(case):g} m is below 1.5 diameters: "
+            "the void fraction will be noisy"
+        )
