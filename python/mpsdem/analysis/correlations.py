@@ -78,7 +78,7 @@ def sphere_drag_coefficient(reynolds: float) -> float:
     _require_positive("reynolds", reynolds)
     if reynolds >= NEWTON_REGIME:
         return NEWTON_DRAG
-    return 24 / reynolds * (1 + 0.15 * reynolds**0.687)
+    return 24 / reynolds * (1 + 0.15 * math.pow(reynolds, 0.687))
 
 
 def terminal_velocity(
@@ -133,8 +133,8 @@ def terminal_velocity(
         # Newton's method on a convex function, from above, so it cannot overshoot.
         reynolds = best / 24
         for _ in range(60):
-            drag = 24 * (reynolds + 0.15 * reynolds**1.687)
-            slope = 24 * (1 + 0.15 * 1.687 * reynolds**0.687)
+            drag = 24 * (reynolds + 0.15 * math.pow(reynolds, 1.687))
+            slope = 24 * (1 + 0.15 * 1.687 * math.pow(reynolds, 0.687))
             reynolds -= (drag - best) / slope
         reynolds = min(reynolds, NEWTON_REGIME)  # C_d rises there by 0.4 % at once
     return math.copysign(reynolds * kinematic_viscosity / diameter, excess)
@@ -183,7 +183,7 @@ def durand_deposition_velocity(
     scale = _bed_scale(pipe_diameter, density, liquid_density, gravity)
     _require_positive("diameter", diameter)
     _require_fraction(volume_fraction)
-    return 1.3 * volume_fraction**0.125 * -math.expm1(-6.9 * diameter / 1e-3) * scale
+    return 1.3 * math.pow(volume_fraction, 0.125) * -math.expm1(-6.9 * diameter / 1e-3) * scale
 
 
 def wasp_deposition_velocity(
@@ -227,7 +227,9 @@ def wasp_deposition_velocity(
     scale = _bed_scale(pipe_diameter, density, liquid_density, gravity)
     _require_positive("diameter", diameter)
     _require_fraction(volume_fraction)
-    return 3.116 * volume_fraction**0.186 * scale * (diameter / pipe_diameter) ** (1 / 6)
+    return (
+        3.116 * math.pow(volume_fraction, 0.186) * scale * math.pow(diameter / pipe_diameter, 1 / 6)
+    )
 
 
 def _bed_scale(
