@@ -153,6 +153,17 @@ def test_the_position_of_a_cluster_is_that_of_its_solids(results):
     assert (curves["tail"].get_ydata() < curves["centre"].get_ydata()).all()
 
 
+def test_a_start_up_peak_does_not_flatten_the_pressure_loss_after_it(tmp_path):
+    with open_writer(tmp_path, CLEAR) as writer:
+        for time in np.linspace(0.0, 8.0, 100):
+            loss = 3000.0 if time == 0 else 60.0 + np.sin(time)
+            writer.append(time, diagnostics={"pressure_gradient": loss})
+    (axes,) = plot.pressure_gradient_over_time(Results(tmp_path)).axes
+    bottom, top = axes.get_ylim()
+    assert 55 < bottom < 59 < 61 < top < 65
+    assert any("3000" in text.get_text() for text in axes.texts)
+
+
 def test_drawing_changes_no_settings_and_needs_no_display(results):
     before = dict(mpl.rcParams)
     plot.side_view(results)

@@ -174,8 +174,26 @@ def pressure_gradient_over_time(results: Results) -> Figure:
         )  # fmt: skip
         axes.set(xlim=(time[0], time[-1] or 1.0), xlabel="time (s)")
         axes.set_ylabel("pressure loss, static head apart (Pa/m)")
+        _keep_to_the_usual(axes, gradient)
         _legend(axes)
     return figure
+
+
+def _keep_to_the_usual(axes: Axes, values: FloatArray) -> None:
+    """Let the few values of a start-up leave the picture rather than flatten all others."""
+    low, high = np.quantile(values, [0.03, 0.97])
+    room = 0.4 * (high - low)
+    bottom, top = max(values.min(), low - room), min(values.max(), high + room)
+    if values.max() - values.min() > 3 * (top - bottom) > 0:
+        axes.set_ylim(bottom - 0.1 * room, top + 0.1 * room)
+        axes.text(
+            0.015,
+            0.97,
+            f"full range: {values.min():.4g} to {values.max():.4g} Pa/m",
+            transform=axes.transAxes,
+            va="top",
+            size=8,
+        )
 
 
 def _figure(
