@@ -87,7 +87,7 @@ def test_run_replaces_results_only_when_told_to(case_file, tmp_path):
         ("solids.denisty=2500", "did you mean 'density'?"),
         ("solids.density=-1", "solids.density = -1"),
         ("solids.diameter=5 kg", "solids.diameter"),
-        ("fidelity.solid_step=1", "Rayleigh time"),
+        ("fidelity.solid_step=1", "of a collision at 1 m/s"),
         ("solids.diameter=0.2", "bore"),
         ("end_time=0", "end_time"),
     ],
