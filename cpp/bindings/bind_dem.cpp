@@ -92,8 +92,29 @@ void bind_dem(py::module_ m) {
 
     py::class_<dem::HertzMindlin> hertz(m, "HertzMindlin",
                                         "Hertz normal and Mindlin tangential force.");
-    hertz.def(py::init<Real, Real, Real, Real>(), py::kw_only(), "youngs_modulus"_a,
-              "poisson_ratio"_a, "restitution"_a, "friction"_a);
+    hertz.def(py::init([](Real youngs_modulus, Real poisson_ratio, Real restitution, Real friction,
+                          std::optional<Real> other_youngs_modulus,
+                          std::optional<Real> other_poisson_ratio) {
+                  return dem::HertzMindlin({youngs_modulus, poisson_ratio},
+                                           {other_youngs_modulus.value_or(youngs_modulus),
+                                            other_poisson_ratio.value_or(poisson_ratio)},
+                                           restitution, friction);
+              }),
+              py::kw_only(), "youngs_modulus"_a, "poisson_ratio"_a, "restitution"_a, "friction"_a,
+              "other_youngs_modulus"_a = py::none(), "other_poisson_ratio"_a = py::none(),
+              R"(Contact of bodies of one material, or of two.
+
+Parameters
+----------
+youngs_modulus, other_youngs_modulus : float
+    [Pa]; infinite for a rigid body. The other body's is the first's unless given.
+poisson_ratio, other_poisson_ratio : float
+    [-].
+restitution : float
+    Returned by a head-on impact at any speed [-].
+friction : float
+    Sliding friction [-].
+)");
     bind_contact_force(hertz);
 
     py::class_<dem::HertzViscoelastic> viscoelastic(

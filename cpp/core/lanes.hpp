@@ -3,6 +3,9 @@
 #include "core/vec3.hpp"
 
 #include <algorithm>
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
 
 /// One text for scalar and vector arithmetic: a kernel written on `T` runs on Real or on Lanes.
 namespace mpsdem {
@@ -51,6 +54,17 @@ using LaneMask = decltype(Lanes{} < Lanes{});
 [[nodiscard]] [[gnu::always_inline]] inline Lanes select(LaneMask condition, Lanes yes,
                                                          Lanes no) noexcept {
     return condition ? yes : no;
+}
+
+[[nodiscard]] [[gnu::always_inline]] inline bool any(LaneMask condition) noexcept {
+#if defined(__AVX512F__)
+    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(condition),
+                                  reinterpret_cast<__m512i>(condition)) != 0;
+#elif defined(__AVX__)
+    return _mm256_movemask_pd(reinterpret_cast<__m256d>(condition)) != 0;
+#else
+    return (condition[0] | condition[1]) != 0;
+#endif
 }
 
 [[nodiscard]] inline Real max(Real a, Real b) noexcept {

@@ -6,23 +6,26 @@
 
 namespace mpsdem::dem {
 
-/// Hertz normal and Mindlin (no micro-slip) tangential force between bodies of one material.
+/// Elastic constants of one body.
+struct Elasticity {
+    Real youngs_modulus; // [Pa]
+    Real poisson_ratio;  // [-]
+};
+
+/// Hertz normal and Mindlin (no micro-slip) tangential force.
 ///
-///   F_n = (2/3) S_n d - c_n v_n >= 0   S_n = 2 E* sqrt(R* d),   E* = E / (2 (1 - nu^2))
-///   F_t by friction_force              S_t = 8 G* sqrt(R* d),   G* = E / (4 (2 - nu) (1 + nu))
-///   c   = a sqrt(2/3 S m*)             a from damping_factor(e, 3/2, 1/4)
+///   F_n = (2/3) S_n d - c_n v_n >= 0   S_n = 2 E* sqrt(R* d),  1/E* = sum (1 - nu^2) / E
+///   F_t by friction_force              S_t = 8 G* sqrt(R* d),  1/G* = sum 2 (2 - nu) (1 + nu) / E
+///   c   = a sqrt(2/3 S m*)             a from damping_factor(e, 3/2, 1/4);  sums over both bodies
 ///
 /// Source: Di Renzo & Di Maio (2004) doi:10.1016/j.ces.2003.09.037, eqs. 4-14. Deviation: contacts
 /// do not pull, and the damping is calibrated for that, so that `restitution` is what comes back.
 class HertzMindlin {
 public:
-    HertzMindlin(Real youngs_modulus, Real poisson_ratio, Real restitution, Real friction)
-        : e_star_(youngs_modulus / (2 * (1 - poisson_ratio * poisson_ratio))),
-          g_star_(youngs_modulus / (4 * (2 - poisson_ratio) * (1 + poisson_ratio))),
-          friction_(friction) {
-        require(youngs_modulus > 0, "HertzMindlin: youngs_modulus must be > 0 Pa");
-        require(poisson_ratio > -1 && poisson_ratio <= 0.5,
-                "HertzMindlin: poisson_ratio must lie in (-1, 0.5]");
+    HertzMindlin(const Elasticity& first, const Elasticity& second, Real restitution, Real friction)
+        : e_star_(1 / (normal_compliance(first) + normal_compliance(second))),
+          g_star_(1 / (tangential_compliance(first) + tangential_compliance(second))),
+          root_ratio_(std::sqrt(4 * g_star_ / e_star_)), friction_(friction) {
         require(restitution > 0 && restitution <= 1,
                 "HertzMindlin: restitution must lie in (0, 1]");
         require(friction >= 0, "HertzMindlin: friction must be >= 0");
@@ -36,7 +39,7 @@ public:
         const T s_n = 2 * e_star_ * root;
         const T s_t = 8 * g_star_ * root;
         const T c_n = damping_ * sqrt(s_n * c.reduced_mass);
-        const T c_t = damping_ * sqrt(s_t * c.reduced_mass);
+        const T c_t = root_ratio_ * c_n;
         const T f_n = max(2. / 3 * s_n * c.overlap - c_n * dot(c.relative_velocity, c.normal), T{});
         return {f_n, friction_force(c, spring, s_t, c_t, friction_ * f_n, dt), s_t};
     }
@@ -48,8 +51,19 @@ public:
     }
 
 private:
+    static Real normal_compliance(const Elasticity& body) {
+        require(body.youngs_modulus > 0, "HertzMindlin: youngs_modulus must be > 0 Pa");
+        require(body.poisson_ratio > -1 && body.poisson_ratio <= 0.5,
+                "HertzMindlin: poisson_ratio must lie in (-1, 0.5]");
+        return (1 - body.poisson_ratio * body.poisson_ratio) / body.youngs_modulus;
+    }
+    static Real tangential_compliance(const Elasticity& body) {
+        return 2 * (2 - body.poisson_ratio) * (1 + body.poisson_ratio) / body.youngs_modulus;
+    }
+
     Real e_star_;      // [Pa]
     Real g_star_;      // [Pa]
+    Real root_ratio_;  // [-]  sqrt(S_t / S_n)
     Real friction_;    // [-]
     Real damping_ = 0; // [-]
 };

@@ -19,7 +19,7 @@ using P = Population;
 constexpr std::size_t single_block = 4096; // [-] solids that one thread handles faster than two
 constexpr std::size_t block_size = 2048;   // [-]
 constexpr std::size_t chunk = 64;          // [-] solids moved at a time: 16 kB
-constexpr Real inner_steps = 20;           // [-] steps that an inner list should last
+constexpr Real inner_steps = 8;            // [-] steps that an inner list should last
 constexpr Real least_inner_skin = 0.005;   // [-] over the mean radius
 constexpr Real outer_steps = 400;          // [-] steps that an outer list should last
 constexpr Real least_outer_skin = 0.25, most_outer_skin = 0.8; // [-] over the mean radius

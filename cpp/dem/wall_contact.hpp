@@ -57,9 +57,9 @@ template <Rolling mode, ContactLaw Law, geometry::Surface S>
         Lanes radius = load(solid + P::RADIUS * lanes);
         const LaneMask touching = wall.touches(position, radius);
         std::uint8_t& active = at_wall.active[begin / lane_count];
-        const bool any = sum(select(touching, Lanes{} + 1, Lanes{})) > 0;
-        if (!any && !active) continue;
-        active = any;
+        const bool contact = any(touching);
+        if (!contact && !active) continue;
+        active = contact;
 
         Real* const history = at_wall.values.data() + WallHistory::place(begin);
         // a padding lane has no radius and no mass; any finite numbers serve
