@@ -75,6 +75,14 @@ def test_a_damaged_checkpoint_is_refused(path, keep):
         read_checkpoint(path, CASE)
 
 
+def test_the_old_checkpoint_is_replaced_and_not_overwritten(path):
+    whole = path.read_bytes()
+    with path.open("rb") as old:
+        write_checkpoint(path, case_toml=CASE.to_toml(), time=9.0, step=9, state={})
+        assert old.read() == whole
+    assert read_checkpoint(path, CASE).step == 9
+
+
 def test_a_full_disk_keeps_the_checkpoint_before(path, monkeypatch):
     def full(_handle):
         raise OSError(errno.ENOSPC, "No space left on device")

@@ -69,6 +69,13 @@ def test_continued_results_equal_those_of_an_undisturbed_run(tmp_path):
     assert continued.case_toml == whole.case_toml
 
 
+def test_a_run_can_be_continued_from_its_first_frame(tmp_path):
+    write_run(tmp_path)
+    with ResultsWriter.reopen(tmp_path, time=0.0) as writer:
+        writer.append(0.25, **frame(0.25))
+    assert_frames_are_right(tmp_path, [0.0, 0.25])
+
+
 def test_a_run_continued_to_a_later_end_records_it(tmp_path):
     write_run(tmp_path)
     ResultsWriter.reopen(tmp_path, time=8.0, case=CASE.with_(end_time=9.0)).close()
