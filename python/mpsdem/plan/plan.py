@@ -169,12 +169,8 @@ def _numbers(case: Case) -> Iterator[Number]:
         unit="",
         meaning="coarse: the bore sees single solids" if diameter > 0.02 * bore else "fine",
     )
-    yield Number(
-        name="mean solid fraction",
-        value=fraction,
-        unit="",
-        meaning="the liquid notices the solids" if fraction > _DILUTE else "dilute",
-    )
+    crowd = "dilute" if fraction <= _DILUTE else "a liquid would notice the solids"
+    yield Number(name="mean solid fraction", value=fraction, unit="", meaning=crowd)
     if liquid is None:
         return
     settling = terminal_velocity(case)
@@ -291,10 +287,10 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         overlap = max(pair.on_spring(pair_stiffness)[0], wall.on_spring(wall_stiffness)[0])
     share = overlap / (solids.largest_diameter / 2)
     if share > SOFT:
-        yield (
-            f"a collision at {speed:.3g} m/s overlaps by {share:.0%} of the radius: "
-            "raise fidelity.stiffness_factor or solids.youngs_modulus"
-        )
+        stiffer = "solids.youngs_modulus" if solids.contact != "linear_spring" else "the stiffness"
+        if case.fidelity.stiffness_factor < 1:
+            stiffer = "fidelity.stiffness_factor"
+        yield f"a collision at {speed:.3g} m/s overlaps by {share:.0%} of the radius; raise {stiffer}"
     if liquid is not None and smoothing_radius(case) < 1.5 * solids.largest_diameter:
         yield (
             f"fidelity.smoothing_radius = {smoothing_radius(case):g} m is below 1.5 diameters: "

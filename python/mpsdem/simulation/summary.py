@@ -84,10 +84,7 @@ _SOLIDS_KEYS = (
 
 def _warnings(values: dict[str, Any]) -> Iterator[str]:
     if (overlap := values.get("largest_overlap", 0.0)) > SOFT:
-        yield (
-            f"solids overlapped by {overlap:.0%} of their radius: "
-            "raise fidelity.stiffness_factor or solids.youngs_modulus"
-        )
+        yield f"solids overlapped by up to {overlap:.0%} of their radius: contacts are too soft"
     if clipped := values.get("void_fraction_clipped"):
         yield f"{clipped} void fractions fell below the floor and were raised to it"
 
