@@ -8,6 +8,39 @@ from typing import Self
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Stiffness:
+    """Elastic constants of the contact of two bodies.
+
+    Parameters
+    ----------
+    normal : float
+        E*, 1 / E* = sum of (1 - nu^2) / E over both bodies [Pa].
+    tangential : float
+        G*, 1 / G* = sum of 2 (2 - nu) (1 + nu) / E over both bodies [Pa].
+
+    References
+    ----------
+    Di Renzo & Di Maio (2004) doi:10.1016/j.ces.2003.09.037.
+    """
+
+    normal: float
+    tangential: float
+
+    @classmethod
+    def of(cls, *bodies: tuple[float, float]) -> Self:
+        """Contact of two bodies, each given by Young's modulus [Pa] and Poisson's ratio [-]."""
+        return cls(
+            normal=1 / sum((1 - nu**2) / e for e, nu in bodies),
+            tangential=1 / sum(2 * (2 - nu) * (1 + nu) / e for e, nu in bodies),
+        )
+
+    @property
+    def ratio(self) -> float:
+        """Tangential over normal stiffness, after Mindlin [-]."""
+        return 4 * self.tangential / self.normal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Impact:
     """An elastic head-on impact of two like spheres, or of a sphere on a flat wall.
 
@@ -17,8 +50,8 @@ class Impact:
         Half the radius for two spheres, the radius at a wall [m].
     reduced_mass : float
         Half the mass for two spheres, the mass at a wall [kg].
-    modulus : float
-        E* of the contact [Pa].
+    stiffness : Stiffness
+        Elastic constants of the contact.
     speed : float
         Closing speed at first touch [m/s].
 
@@ -29,26 +62,38 @@ class Impact:
 
     reduced_radius: float
     reduced_mass: float
-    modulus: float
+    stiffness: Stiffness
     speed: float
 
     @classmethod
-    def between(cls, *, diameter: float, density: float, modulus: float, speed: float) -> Self:
+    def between(
+        cls, *, diameter: float, density: float, stiffness: Stiffness, speed: float
+    ) -> Self:
         """Two spheres of a diameter [m] and a density [kg/m3]."""
-        mass = density * math.pi / 6 * diameter**3
-        return cls(reduced_radius=diameter / 4, reduced_mass=mass / 2, modulus=modulus, speed=speed)
+        return cls(
+            reduced_radius=diameter / 4,
+            reduced_mass=density * math.pi / 12 * diameter**3,
+            stiffness=stiffness,
+            speed=speed,
+        )
 
     @classmethod
-    def at_wall(cls, *, diameter: float, density: float, modulus: float, speed: float) -> Self:
+    def at_wall(
+        cls, *, diameter: float, density: float, stiffness: Stiffness, speed: float
+    ) -> Self:
         """A sphere of a diameter [m] and a density [kg/m3] on a flat wall."""
-        mass = density * math.pi / 6 * diameter**3
-        return cls(reduced_radius=diameter / 2, reduced_mass=mass, modulus=modulus, speed=speed)
+        return cls(
+            reduced_radius=diameter / 2,
+            reduced_mass=density * math.pi / 6 * diameter**3,
+            stiffness=stiffness,
+            speed=speed,
+        )
 
     @property
     def overlap(self) -> float:
         """Largest overlap of the Hertz contact [m]."""
         energy = 15 / 16 * self.reduced_mass * self.speed**2
-        return float((energy / (self.modulus * math.sqrt(self.reduced_radius))) ** 0.4)
+        return float((energy / (self.stiffness.normal * math.sqrt(self.reduced_radius))) ** 0.4)
 
     @property
     def duration(self) -> float:
@@ -67,16 +112,6 @@ class Impact:
         """
         root = math.sqrt(self.reduced_mass / stiffness)
         return self.speed * root, math.pi * root
-
-
-def effective_modulus(*, youngs_modulus: float, poisson_ratio: float) -> float:
-    """E* of two bodies of one material [Pa]."""
-    return youngs_modulus / (2 * (1 - poisson_ratio**2))
-
-
-def tangential_ratio(poisson_ratio: float) -> float:
-    """Mindlin's ratio of tangential to normal stiffness of one contact [-]."""
-    return 2 * (1 - poisson_ratio) / (2 - poisson_ratio)
 
 
 def rayleigh_time(

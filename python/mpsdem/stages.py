@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import coupling, dem, geometry, mps
 from mpsdem.case import Case, Liquid, Material, Solids
-from mpsdem.contacts import Impact, tangential_ratio
+from mpsdem.contacts import Impact
 from mpsdem.geometry import place_solids
 from mpsdem.plan import (
     DRAG_LAWS,
@@ -346,68 +346,73 @@ def _contact_laws(case: Case, speed: float) -> tuple[ContactLaw, ContactLaw]:
     """Law between solids, and at the wall."""
     assert case.solids is not None
     solid, wall = materials(case)
+    pair, at_wall = impacts(case, diameter=mean_diameter(case.solids), speed=speed)
     match case.solids.contact:
         case "hertz_mindlin":
-            return _hertz_mindlin(solid), _hertz_mindlin(wall)
+            return _hertz_mindlin(solid, solid), _hertz_mindlin(solid, wall)
         case "hertz_viscoelastic":
-            pair, at_wall = impacts(case, diameter=mean_diameter(case.solids), speed=speed)
             return _hertz_viscoelastic(solid, pair), _hertz_viscoelastic(wall, at_wall)
         case "linear_spring":
-            pair_stiffness, wall_stiffness = spring_stiffness(case, speed)
+            between, against = spring_stiffness(case, speed)
             return (
-                _linear_spring(case, solid, pair_stiffness),
-                _linear_spring(case, wall, wall_stiffness),
+                _linear_spring(case, solid, between, pair.stiffness.ratio),
+                _linear_spring(case, wall, against, at_wall.stiffness.ratio),
             )
 
 
-def _hertz_mindlin(material: Material) -> dem.HertzMindlin:
+def _hertz_mindlin(solid: Material, other: Material) -> dem.HertzMindlin:
+    """Contact of a solid with another body, which says how they rebound and rub."""
     return dem.HertzMindlin(
-        youngs_modulus=material.youngs_modulus,
-        poisson_ratio=material.poisson_ratio,
-        restitution=material.restitution,
-        friction=material.friction,
+        youngs_modulus=solid.youngs_modulus,
+        poisson_ratio=solid.poisson_ratio,
+        other_youngs_modulus=other.youngs_modulus,
+        other_poisson_ratio=other.poisson_ratio,
+        restitution=other.restitution,
+        friction=other.friction,
     )
 
 
-def _linear_spring(case: Case, material: Material, stiffness: float) -> dem.LinearSpring:
+def _linear_spring(
+    case: Case, other: Material, normal_stiffness: float, ratio: float
+) -> dem.LinearSpring:
     solids = case.solids
     assert solids is not None
-    tangential = tangential_ratio(material.poisson_ratio) * stiffness
+    tangential_stiffness = ratio * normal_stiffness
     if solids.tangential_stiffness is not None:
-        tangential = case.fidelity.stiffness_factor * solids.tangential_stiffness
+        tangential_stiffness = case.fidelity.stiffness_factor * solids.tangential_stiffness
     if solids.normal_damping is None:
         return dem.LinearSpring.with_restitution(
-            normal_stiffness=stiffness,
-            tangential_stiffness=tangential,
-            restitution=material.restitution,
-            friction=material.friction,
+            normal_stiffness=normal_stiffness,
+            tangential_stiffness=tangential_stiffness,
+            restitution=other.restitution,
+            friction=other.friction,
         )
     damping = solids.normal_damping
     return dem.LinearSpring(
-        normal_stiffness=stiffness,
-        tangential_stiffness=tangential,
+        normal_stiffness=normal_stiffness,
+        tangential_stiffness=tangential_stiffness,
         normal_damping=damping,
         tangential_damping=(
             damping if solids.tangential_damping is None else solids.tangential_damping
         ),
-        friction=material.friction,
+        friction=other.friction,
     )
 
 
-def _hertz_viscoelastic(material: Material, impact: Impact) -> dem.HertzViscoelastic:
+def _hertz_viscoelastic(other: Material, impact: Impact) -> dem.HertzViscoelastic:
     """Stiffness of Hertz and Mindlin; damping that returns the restitution at the impact's speed.
 
     The impact x'' + a x^(1/2) x' + x^(3/2) = 0 is scaled with the time t below, the speed, and
     their product as length.
     """
-    normal = 4 / 3 * impact.modulus  # [Pa]
+    normal = 4 / 3 * impact.stiffness.normal  # [Pa]
     root = math.sqrt(impact.reduced_radius * impact.speed)
     t = (impact.reduced_mass / (root * normal)) ** 0.4  # [s]
-    damping = dem.damping_factor(material.restitution, 1.5, 0.5) / (root * t**1.5)  # [1/(m s)]
+    damping = dem.damping_factor(other.restitution, 1.5, 0.5) / (root * t**1.5)  # [1/(m s)]
     return dem.HertzViscoelastic(
         normal_stiffness=normal,
-        tangential_stiffness=tangential_ratio(material.poisson_ratio) * 2 * impact.modulus,
+        tangential_stiffness=8 * impact.stiffness.tangential,
         normal_damping=damping,
         tangential_damping=damping / 2,  # the usual share, Silbert et al. (2001)
-        friction=material.friction,
+        friction=other.friction,
     )

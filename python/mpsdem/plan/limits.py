@@ -95,14 +95,12 @@ def _contact_scales(case: Case, speed: float) -> Iterator[_Scale]:
         return
     if solids.contact == "hertz_viscoelastic":
         require_speed(speed, "solids.contact", "take 'hertz_mindlin'")
-    rayleigh = min(
-        rayleigh_time(
-            diameter=diameter,
-            density=solids.density,
-            youngs_modulus=material.youngs_modulus,
-            poisson_ratio=material.poisson_ratio,
-        )
-        for material in materials(case)
+    material, _ = materials(case)
+    rayleigh = rayleigh_time(
+        diameter=diameter,
+        density=solids.density,
+        youngs_modulus=material.youngs_modulus,
+        poisson_ratio=material.poisson_ratio,
     )
     yield _Scale(name="the smallest solid's Rayleigh time", time=rayleigh)
     duration = min(pair.duration, wall.duration)

@@ -290,7 +290,7 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         stiffer = "solids.youngs_modulus" if solids.contact != "linear_spring" else "the stiffness"
         if case.fidelity.stiffness_factor < 1:
             stiffer = "fidelity.stiffness_factor"
-        yield f"a collision at {speed:.3g} m/s overlaps by {share:.0%} of the radius; raise {stiffer}"
+        yield f"a collision at {speed:.3g} m/s goes {share:.0%} of the radius deep: raise {stiffer}"
     if liquid is not None and smoothing_radius(case) < 1.5 * solids.largest_diameter:
         yield (
             f"fidelity.smoothing_radius = {smoothing_radius(case):g} m is below 1.5 diameters: "

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from mpsdem._core import coupling, mps
 from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
-from mpsdem.contacts import Impact, effective_modulus
+from mpsdem.contacts import Impact, Stiffness
 
 FloatArray = NDArray[np.float64]
 DragLaw = coupling.SchillerNaumann | coupling.WenYu | coupling.ErgunWenYu | coupling.DiFelice
@@ -24,7 +24,7 @@ DRAG_LAWS: Mapping[str, type[DragLaw]] = {
 
 
 def materials(case: Case) -> tuple[Material, Material]:
-    """Material between solids, and at the wall, softened by the stiffness factor."""
+    """Material of the solids and of the wall, softened by the stiffness factor."""
     solids = solids_of(case)
 
     def softened(material: Material) -> Material:
@@ -38,13 +38,11 @@ def materials(case: Case) -> tuple[Material, Material]:
 def impacts(case: Case, *, diameter: float, speed: float) -> tuple[Impact, Impact]:
     """Impact of two solids, and of one on the wall, of a diameter [m] at a speed [m/s]."""
     density = solids_of(case).density
-    solid, wall = (
-        effective_modulus(youngs_modulus=m.youngs_modulus, poisson_ratio=m.poisson_ratio)
-        for m in materials(case)
-    )
+    solid, wall = ((m.youngs_modulus, m.poisson_ratio) for m in materials(case))
+    pair, at_wall = Stiffness.of(solid, solid), Stiffness.of(solid, wall)
     return (
-        Impact.between(diameter=diameter, density=density, modulus=solid, speed=speed),
-        Impact.at_wall(diameter=diameter, density=density, modulus=wall, speed=speed),
+        Impact.between(diameter=diameter, density=density, stiffness=pair, speed=speed),
+        Impact.at_wall(diameter=diameter, density=density, stiffness=at_wall, speed=speed),
     )
 
 
