@@ -86,7 +86,7 @@ options = {
 solids = st.one_of(
     table(common | {"arrangement": block | listed}, options),
     table(common | {"count": st.integers(1, 20)}, options),
-    table(common | {"volume_fraction": number(0.05, 0.3), "arrangement": stretch}, options),
+    table(common | {"volume_fraction": number(0.01, 0.12), "arrangement": stretch}, options),
 )
 liquid = table(
     {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['DiFelice', 'ErgunWenYu', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate', 'void_fraction_at_solids']
+__all__: list[str] = ['DiFelice', 'ErgunWenYu', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate']
 class SchillerNaumann:
     """
     Drag of an isolated sphere.
@@ -231,8 +231,4 @@ def drag_rate(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_ve
     References
     ----------
     Zhou, Kuang, Chu & Yu (2010), doi:10.1017/S002211201000306X.
-    """
-def void_fraction_at_solids(*, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pipe_radius: typing.SupportsFloat | typing.SupportsIndex, period: typing.SupportsFloat | typing.SupportsIndex, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], int]:
-    """
-    `VoidFraction.at_solids` once. A run keeps the `VoidFraction`, which is costly to set up.
     """

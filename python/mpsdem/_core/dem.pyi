@@ -49,8 +49,21 @@ class HertzMindlin:
     """
     Hertz normal and Mindlin tangential force.
     """
-    def __init__(self, *, youngs_modulus: typing.SupportsFloat | typing.SupportsIndex, poisson_ratio: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex) -> None:
-        ...
+    def __init__(self, *, youngs_modulus: typing.SupportsFloat | typing.SupportsIndex, poisson_ratio: typing.SupportsFloat | typing.SupportsIndex, restitution: typing.SupportsFloat | typing.SupportsIndex, friction: typing.SupportsFloat | typing.SupportsIndex, other_youngs_modulus: typing.SupportsFloat | typing.SupportsIndex | None = None, other_poisson_ratio: typing.SupportsFloat | typing.SupportsIndex | None = None) -> None:
+        """
+        Contact of bodies of one material, or of two.
+        
+        Parameters
+        ----------
+        youngs_modulus, other_youngs_modulus : float
+            [Pa]; infinite for a rigid body. The other body's is the first's unless given.
+        poisson_ratio, other_poisson_ratio : float
+            [-].
+        restitution : float
+            Returned by a head-on impact at any speed [-].
+        friction : float
+            Sliding friction [-].
+        """
     def contact_force(self, *, normal: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], relative_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], overlap: typing.SupportsFloat | typing.SupportsIndex, reduced_radius: typing.SupportsFloat | typing.SupportsIndex, reduced_mass: typing.SupportsFloat | typing.SupportsIndex, spring: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], dt: typing.SupportsFloat | typing.SupportsIndex) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Force of one contact on body i.
