@@ -181,7 +181,8 @@ def _case(
         case = case.with_(fidelity={"level": fidelity.value})
     if until is not None:
         times = tuple(time for time in case.output.times or () if time <= until) or None
-        case = case.with_(end_time=until, output={"times": times})
+        every = min(case.output.every, until) if until > 0 else case.output.every
+        case = case.with_(end_time=until, output={"times": times, "every": every})
     return case.with_settings(settings or [])
 
 

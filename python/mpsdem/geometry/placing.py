@@ -199,7 +199,7 @@ def _inside(
 
 def _near(position: FloatArray, pipe: Pipe, reach: float) -> tuple[IntArray, IntArray]:
     """Pairs with centres nearer than `reach`, across the ends too, in a fixed order."""
-    tree = cKDTree(_wrapped(position, pipe), boxsize=[pipe.length, 0.0, 0.0])
+    tree = cKDTree(_wrapped(position, pipe), boxsize=np.array([pipe.length, 0.0, 0.0]))
     pairs = tree.query_pairs(reach, output_type="ndarray")
     ordered = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
     return ordered[:, 0], ordered[:, 1]
