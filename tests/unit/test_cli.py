@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import mpsdem
 from mpsdem import Results
 from mpsdem.cli import app
 
-PACKAGE = Path(__file__).parents[2] / "python"
+PACKAGE = Path(mpsdem.__file__).parents[1]  # the one that these tests run, wherever it is installed
 CASE = """
 title = "Short pipe"
 end_time = 0.1
