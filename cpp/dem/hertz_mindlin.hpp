@@ -29,6 +29,8 @@ public:
         require(restitution > 0 && restitution <= 1,
                 "HertzMindlin: restitution must lie in (0, 1]");
         require(friction >= 0, "HertzMindlin: friction must be >= 0");
+        require(std::isfinite(e_star_),
+                "HertzMindlin: youngs_modulus must be finite for one body at least");
         damping_ = damping_factor(restitution, 1.5, 0.25) * std::sqrt(2. / 3);
     }
 

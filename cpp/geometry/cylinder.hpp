@@ -9,7 +9,8 @@ namespace mpsdem::geometry {
 class Cylinder {
 public:
     Cylinder(Real radius, Vec3 velocity) : radius_(radius), velocity_(velocity) {
-        require(radius > 0, "Cylinder: radius must be > 0 m");
+        require(radius > 0 && std::isfinite(radius), "Cylinder: radius must be > 0 m and finite");
+        require(std::isfinite(norm(velocity)), "Cylinder: velocity must be finite");
     }
 
     template <class T>

@@ -9,7 +9,10 @@ namespace mpsdem::geometry {
 class Plane {
 public:
     Plane(Vec3 point, Vec3 normal, Vec3 velocity) : velocity_(velocity) {
-        require(norm(normal) > 0, "Plane: normal must not be zero");
+        require(norm(normal) > 0 && std::isfinite(norm(normal)),
+                "Plane: normal must be finite and not zero");
+        require(std::isfinite(norm(point)), "Plane: point must be finite");
+        require(std::isfinite(norm(velocity)), "Plane: velocity must be finite");
         normal_ = (1 / norm(normal)) * normal;
         offset_ = dot(point, normal_);
     }
