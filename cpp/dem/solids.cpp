@@ -5,6 +5,8 @@
 #include "dem/pair_contact.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -23,6 +25,23 @@ constexpr Real inner_steps = 8;            // [-] steps that an inner list shoul
 constexpr Real least_inner_skin = 0.005;   // [-] over the mean radius
 constexpr Real outer_steps = 400;          // [-] steps that an outer list should last
 constexpr Real least_outer_skin = 0.25, most_outer_skin = 0.8; // [-] over the mean radius
+
+constexpr Real most_laps = 1 << 30; // [-] beyond it a solid is lost: laps are whole numbers
+
+/// Where x lies within the period, and after how many periods.
+struct Lap {
+    Real x;     // [m]  in [0, period), whatever the rounding
+    Real count; // [-]  whole
+
+    Lap(Real unwrapped, Real period) : count(std::floor(unwrapped / period)) {
+        x = std::max(unwrapped - count * period, 0.);
+        if (x >= period) {
+            x = 0;
+            ++count;
+        }
+        count = std::clamp(count, -most_laps, most_laps); // a lost solid: finite() tells
+    }
+};
 
 /// A touching pair on its way from one order of the solids to the next.
 struct Carried {
@@ -45,10 +64,13 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
     require(velocity.size() == n && spin.size() == n && radius.size() == n && density.size() == n,
             "Solids: position, velocity, spin, radius and density must have the same length");
     require(threads >= 1, "Solids: threads must be >= 1");
-    require(period >= 0, "Solids: period must be >= 0 m (0: not periodic)");
+    require(period >= 0 && std::isfinite(period),
+            "Solids: period must be >= 0 m and finite (0: not periodic)");
     for (std::size_t i = 0; i < n; ++i) {
-        require(radius[i] > 0, "Solids: radius must be > 0 m");
-        require(density[i] > 0, "Solids: density must be > 0 kg/m3");
+        require(radius[i] > 0 && std::isfinite(radius[i]),
+                "Solids: radius must be > 0 m and finite");
+        require(density[i] > 0 && std::isfinite(density[i]),
+                "Solids: density must be > 0 kg/m3 and finite");
         solids_.at(P::RADIUS, i) = radius[i];
         const Real volume = 4. / 3 * std::numbers::pi * radius[i] * radius[i] * radius[i];
         solids_.at(P::INVERSE_MASS, i) = 1 / (density[i] * volume);
@@ -63,6 +85,10 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
     require(period == 0 || period >= 4 * max_radius_,
             "Solids: period must be at least two diameters of the largest solid, else a solid "
             "touches its own image");
+    for (const geometry::Wall& wall : walls_) {
+        const Real curvature = std::visit([](const auto& w) { return w.curvature(); }, wall);
+        require(-2 * curvature * max_radius_ < 1, "Solids: radius must be less than the bore's");
+    }
 
     const std::size_t size = n <= single_block ? solids_.padded() : block_size;
     for (std::size_t begin = 0; begin < solids_.padded(); begin += size) {
@@ -92,6 +118,7 @@ void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec
     for (std::size_t i = 0; i < n; ++i) {
         const Index id = solids_.id()[i];
         const Real k = drag_rate.empty() ? 0 : drag_rate[id];
+        require(!(k < 0), "set_forcing: drag_rate must be >= 0 1/s");
         const Vec3 u = drag_rate.empty() ? Vec3{} : liquid_velocity[id];
         solids_.set(P::AX, i, acceleration[id] + k * u);
         solids_.set(P::UX, i, u);
@@ -234,17 +261,10 @@ bool Solids::sort() {
     std::vector<std::int32_t> wraps(n);
     if (period_ > 0) {
         for (std::size_t i = 0; i < n; ++i) {
-            Real& x = solids_.at(P::X, i);
-            auto wrap = static_cast<std::int32_t>(std::floor(x / period_));
-            x -= wrap * period_;
-            if (x >= period_) {
-                x -= period_;
-                ++wrap;
-            } else if (x < 0) {
-                x = 0; // rounding of a hair below zero
-            }
-            wraps[i] = wrap;
-            solids_.laps()[i] += wrap;
+            const Lap lap(solids_.at(P::X, i), period_);
+            solids_.at(P::X, i) = lap.x;
+            wraps[i] = static_cast<std::int32_t>(lap.count);
+            solids_.laps()[i] += wraps[i];
         }
     }
 
@@ -295,6 +315,10 @@ bool Solids::sort() {
         sum += solids_.vector(P::VX, i);
     }
     frame_velocity_ = (1 / static_cast<Real>(n)) * sum;
+    for (std::size_t i = n; i < solids_.padded(); ++i) { // padding keeps pace, never the fastest
+        solids_.set(P::X, i, {});
+        solids_.set(P::VX, i, frame_velocity_);
+    }
     frame_time_ = approach_ = 0;
 
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
@@ -377,8 +401,15 @@ void Solids::link_blocks() {
 
 bool Solids::finite() const noexcept {
     Real check = 0;
-    for (const auto field : {P::X, P::Y, P::Z, P::VX, P::VY, P::VZ, P::SX, P::SY, P::SZ})
-        for (std::size_t i = 0; i < size(); ++i) check += 0 * solids_.at(field, i);
+    for (const auto field : {P::X, P::Y, P::Z, P::VX, P::VY, P::VZ, P::SX, P::SY, P::SZ}) {
+        for (std::size_t i = 0; i < size(); ++i) {
+            const Real value = solids_.at(field, i);
+            check += 0 * (value * value); // squares: distances and energies must be finite, too
+        }
+    }
+    const Real most = period_ > 0 ? most_laps * period_ : std::numeric_limits<Real>::max();
+    for (std::size_t i = 0; i < size(); ++i)
+        if (!(std::abs(solids_.at(P::X, i)) < most)) return false;
     return check == 0; // 0 * NaN and 0 * infinity are NaN
 }
 
@@ -392,19 +423,16 @@ std::vector<T> Solids::in_callers_order(const Value& value) const {
 std::vector<Vec3> Solids::position() const {
     return in_callers_order<Vec3>([&](std::size_t i) {
         Vec3 x = solids_.vector(P::X, i);
-        if (period_ > 0) x.x -= std::floor(x.x / period_) * period_;
-        if (period_ > 0 && x.x >= period_) x.x = 0;
+        if (period_ > 0) x.x = Lap(x.x, period_).x;
         return x;
     });
 }
 
 std::vector<std::int64_t> Solids::laps() const {
     return in_callers_order<std::int64_t>([&](std::size_t i) {
-        const Real x = solids_.at(P::X, i);
         if (period_ == 0) return std::int64_t{0};
-        auto wrap = static_cast<std::int64_t>(std::floor(x / period_));
-        if (x - static_cast<Real>(wrap) * period_ >= period_) ++wrap;
-        return solids_.laps()[i] + wrap;
+        return solids_.laps()[i] +
+               static_cast<std::int64_t>(Lap(solids_.at(P::X, i), period_).count);
     });
 }
 
@@ -519,6 +547,8 @@ namespace {
 /// Writes or reads numbers in one fixed sequence, so that saving and restoring cannot disagree.
 struct Writer {
     Solids::Snapshot& out;
+    void same(std::int64_t v) { out.integers.push_back(v); }
+    void same(Real v) { out.reals.push_back(v); }
     void operator()(Real& v) { out.reals.push_back(v); }
     template <std::integral T>
     void operator()(T& v) {
@@ -533,6 +563,12 @@ struct Writer {
 struct Reader {
     const Solids::Snapshot& in;
     std::size_t real = 0, integer = 0;
+    template <class T>
+    void same(T expected) {
+        T v;
+        (*this)(v);
+        require(v == expected, "restore: the snapshot belongs to another population");
+    }
     void operator()(Real& v) {
         require(real < in.reals.size(), "restore: the snapshot is too short");
         v = in.reals[real++];
@@ -551,6 +587,17 @@ struct Reader {
     }
 };
 
+/// FNV-1a over the numbers: a damaged snapshot must not be read, its indices are trusted.
+std::int64_t seal(std::span<const Real> reals, std::span<const std::int64_t> integers) {
+    std::uint64_t hash = 14695981039346656037u;
+    const auto take = [&](auto v) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(v)) * 1099511628211u;
+    };
+    std::ranges::for_each(reals, take);
+    std::ranges::for_each(integers, take);
+    return std::bit_cast<std::int64_t>(hash);
+}
+
 } // namespace
 
 template <class Archive>
@@ -564,6 +611,9 @@ void Solids::exchange(Archive& archive) {
         archive.resize(values);
         for (auto& v : values) archive(v);
     };
+    for (const std::size_t count : {size(), blocks_.size(), walls_.size(), lane_count})
+        archive.same(static_cast<std::int64_t>(count));
+    archive.same(period_);
     for (std::size_t k = 0; k < solids_.padded() * P::field_count; ++k)
         archive(solids_.values()[k]);
     for (Index& id : solids_.id()) archive(id);
@@ -595,14 +645,22 @@ Solids::Snapshot Solids::snapshot() const {
     Snapshot out;
     Writer writer{out};
     const_cast<Solids*>(this)->exchange(writer); // writes no member
+    out.integers.push_back(seal(out.reals, out.integers));
     return out;
 }
 
 void Solids::restore(const Snapshot& snapshot) {
+    const std::span integers(snapshot.integers);
+    require(!integers.empty() &&
+                integers.back() == seal(snapshot.reals, integers.first(integers.size() - 1)),
+            "restore: the snapshot is damaged");
+    Solids restored(*this); // a refused snapshot leaves all as it was
     Reader reader{snapshot};
-    exchange(reader);
-    require(reader.real == snapshot.reals.size() && reader.integer == snapshot.integers.size(),
+    restored.exchange(reader);
+    require(reader.real == snapshot.reals.size() && reader.integer + 1 == integers.size() &&
+                restored.radius() == radius() && restored.mass() == mass(),
             "restore: the snapshot belongs to another population");
+    *this = std::move(restored);
     link_blocks();
 }
 
