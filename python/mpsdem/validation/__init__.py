@@ -35,6 +35,8 @@ def run(ids: Iterable[str] = ()) -> int:
         Exit code: 1 if a check fails, 2 if an id names none, else 0.
     """
     console = Console()
+    if not console.is_terminal:
+        console.width = max(console.width, 132)  # a file has no margin to keep to
     try:
         checks = select(CHECKS, ids)
     except LookupError as error:

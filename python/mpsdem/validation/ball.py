@@ -88,6 +88,32 @@ def impact_on_plane(
 
 
 @cache
+def impact_on_linear_spring(
+    ball: Ball, *, normal: float, stiffness: float, restitution: float = 1.0
+) -> Rebound:
+    """Let a ball hit a plane head-on, without gravity.
+
+    Parameters
+    ----------
+    ball : Ball
+    normal : float
+        Speed towards the plane [m/s].
+    stiffness : float
+        Of the contact [N/m].
+    restitution : float
+        [-].
+    """
+    law = dem.LinearSpring.with_restitution(
+        normal_stiffness=stiffness,
+        tangential_stiffness=stiffness,
+        restitution=restitution,
+        friction=0.0,
+    )
+    solids = _solids([ball], law, velocity=[[0.0, 0.0, -normal]], spin=[0.0])
+    return _rebound(solids, math.pi * math.sqrt(ball.mass / stiffness))
+
+
+@cache
 def impact_of_two(
     ball: Ball,
     other: Ball,
@@ -223,7 +249,7 @@ def _law(
 
 def _solids(
     balls: Sequence[Ball],
-    law: dem.HertzMindlin,
+    law: dem.HertzMindlin | dem.LinearSpring,
     *,
     velocity: list[list[float]],
     spin: list[float],
