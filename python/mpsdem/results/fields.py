@@ -43,7 +43,14 @@ SOLIDS = _table(
 
 LIQUID = _table(
     ("profile_radius", "m", "Distances from the pipe axis at which the profile is given"),
-    ("profile_velocity", "m/s", "Axial liquid velocity at those distances"),
+    ("profile_velocity", "m/s", "Prescribed axial liquid velocity at those distances"),
+    ("velocity_profile", "m/s", "Mean axial velocity of the liquid in rings at those distances"),
+    ("section_position", "m", "Middles of equal bins along the pipe"),
+    ("section_pressure", "Pa", "Mean pressure in those bins, mean gradient and static head apart"),
+    ("kind", "1", "Each recorded particle: 2 liquid, -2 wall, -1 ghost", "int8"),
+    ("position", "m", "Place of each recorded particle; x wrapped into [0, pipe length)"),
+    ("velocity", "m/s", "Velocity of each recorded particle"),
+    ("pressure", "Pa", "Pressure of each recorded particle, mean gradient and static head apart"),
 )
 
 DIAGNOSTICS = _table(
@@ -56,6 +63,13 @@ DIAGNOSTICS = _table(
     ("contacts", "1", "Number of touching pairs, walls included", "int64"),
     ("wall_force", "N", "Mean force of the walls on the solids since the last frame"),
     ("drag_force", "N", "Mean force of the liquid on all solids since the last frame"),
+    ("pressure_iterations", "1", "Iterations for the pressure, mean per step since the last frame"),
+    ("pressure_residual", "1", "Largest residual of the pressure equation since the last frame"),
+    ("density_scatter", "1", "Scatter of the liquid's particle number density about its mean"),
+    ("pressure_noise", "Pa", "Scatter of the liquid's pressure, mean gradient and head apart"),
+    ("liquid_kinetic_energy", "J/kg", "Kinetic energy of the liquid over its mass"),
+    ("clamped", "1", "Pressures cut to their bounds since the last frame", "int64"),
+    ("held_back", "1", "Particles held back from a wall since the last frame", "int64"),
 )
 
 GROUPS: Mapping[str, Mapping[str, FieldInfo]] = MappingProxyType(

@@ -212,26 +212,79 @@ class SolidsResults:
 
 
 class LiquidResults:
-    """The prescribed liquid of a run.
+    """The liquid of a run, prescribed or made of particles.
 
     Parameters
     ----------
     results : Results
         The run's results.
+
+    Notes
+    -----
+    A prescribed liquid is its profile. One of particles has a profile per frame, the pressure along
+    the axis, and those particles that the run recorded, which may be none.
     """
 
     def __init__(self, results: Results) -> None:
         self._run = results._run
 
+    def __contains__(self, name: str) -> bool:
+        return f"liquid/{name}" in self._run
+
+    @property
+    def is_prescribed(self) -> bool:
+        """Whether the liquid's velocity was given rather than computed."""
+        return "profile_velocity" in self
+
+    @property
+    def has_particles(self) -> bool:
+        """Whether particles of the liquid were recorded."""
+        return "position" in self
+
     @property
     def profile_radius(self) -> FloatArray:
-        """Distances from the axis at which the profile is given, (k,) [m]."""
+        """Distances from the axis at which the profile is given, (b,) [m]."""
         return self._run.read("liquid/profile_radius")
 
     @property
     def profile_velocity(self) -> FloatArray:
-        """Axial liquid velocity at those distances, (k,) [m/s]."""
+        """Prescribed axial liquid velocity at those distances, (b,) [m/s]."""
         return self._run.read("liquid/profile_velocity")
+
+    @property
+    def velocity_profile(self) -> Field:
+        """Mean axial velocity of all liquid particles in rings at those distances, (frames, b)."""
+        return Field(self._run, "liquid/velocity_profile")
+
+    @property
+    def section_position(self) -> FloatArray:
+        """Middles of equal bins along the pipe, (s,) [m]."""
+        return self._run.read("liquid/section_position")
+
+    @property
+    def section_pressure(self) -> Field:
+        """Mean pressure in those bins, (frames, s) [Pa]; mean gradient and static head apart."""
+        return Field(self._run, "liquid/section_pressure")
+
+    @property
+    def kind(self) -> NDArray[np.int8]:
+        """Each recorded particle, (m,): 2 liquid, -2 wall, -1 ghost."""
+        return self._run.read("liquid/kind")
+
+    @property
+    def position(self) -> Field:
+        """Places of the recorded particles, (frames, m, 3) [m]; x wrapped into [0, length)."""
+        return Field(self._run, "liquid/position")
+
+    @property
+    def velocity(self) -> Field:
+        """Velocities of the recorded particles, (frames, m, 3) [m/s]."""
+        return Field(self._run, "liquid/velocity")
+
+    @property
+    def pressure(self) -> Field:
+        """Pressures of the recorded particles, (frames, m) [Pa]; mean gradient and head apart."""
+        return Field(self._run, "liquid/pressure")
 
 
 class Diagnostics(Mapping[str, FloatArray]):

@@ -149,6 +149,7 @@ class ResultsWriter:
         time: float,
         *,
         solids: Mapping[str, ArrayLike] | None = None,
+        liquid: Mapping[str, ArrayLike] | None = None,
         diagnostics: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         """Write one frame and flush it.
@@ -159,6 +160,8 @@ class ResultsWriter:
             Simulated time [s], later than that of the last frame.
         solids : mapping of str to array_like, optional
             Fields of the solids, (n,) or (n, 3), by the names in `mpsdem.results.fields`.
+        liquid : mapping of str to array_like, optional
+            Fields of the recorded liquid particles, (m,) or (m, 3), and profiles, by those names.
         diagnostics : mapping of str to array_like, optional
             Numbers about the whole run, by the names in `mpsdem.results.fields`.
 
@@ -167,7 +170,7 @@ class ResultsWriter:
         OutputError
             If the disk is full or the file cannot be written; the frames before are kept.
         """
-        frame = _by_path(solids=solids, diagnostics=diagnostics)
+        frame = _by_path(solids=solids, liquid=liquid, diagnostics=diagnostics)
         if not time > self._last_time:
             raise ValueError(f"a frame at {time!r} s cannot follow one at {self._last_time!r} s")
         try:
