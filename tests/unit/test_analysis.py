@@ -7,13 +7,17 @@ from hypothesis import strategies as st
 
 from mpsdem.analysis import (
     extent,
+    friction_velocity,
     height_edges,
+    laminar_profile,
     silhouette,
     slab_area,
     slab_volume,
+    turbulent_profile,
     velocity_over_height,
     volume_fraction_over_height,
 )
+from mpsdem.analysis.correlations import friction_factor
 
 PIPE_RADIUS = 0.1
 LENGTH = 4.0
@@ -134,3 +138,63 @@ def test_a_straggler_moves_neither_front_nor_tail():
     x = np.concatenate([np.full(98, 1.0), [0.0, 3.9]])[None]
     cluster = extent(x)
     assert cluster.front[0] == cluster.tail[0] == 1.0
+
+
+R = np.linspace(0.0, PIPE_RADIUS, 20001)
+VISCOSITY = 1e-6
+
+
+def flow_rate(velocity):
+    return np.trapezoid(velocity * 2 * np.pi * R, R)
+
+
+def log_law(u_star, roughness=0.0, viscosity=VISCOSITY):
+    return turbulent_profile(
+        R,
+        pipe_radius=PIPE_RADIUS,
+        friction_velocity=u_star,
+        kinematic_viscosity=viscosity,
+        roughness=roughness,
+    )
+
+
+def test_the_friction_velocity_balances_the_pressure_loss():
+    shear = 998.0 * friction_velocity(80.0, pipe_radius=PIPE_RADIUS, density=998.0) ** 2
+    assert shear * 2 * np.pi * PIPE_RADIUS == pytest.approx(80.0 * np.pi * PIPE_RADIUS**2)
+    assert friction_velocity(-80.0, pipe_radius=PIPE_RADIUS, density=998.0) < 0
+    assert friction_velocity(0.0, pipe_radius=PIPE_RADIUS, density=998.0) == 0
+
+
+def test_the_parabola_carries_the_bulk_velocity_and_sticks_to_the_wall():
+    u = laminar_profile(R, pipe_radius=PIPE_RADIUS, bulk_velocity=-0.3)
+    assert flow_rate(u) == pytest.approx(-0.3 * np.pi * PIPE_RADIUS**2, rel=1e-6)
+    assert u[-1] == 0
+
+
+@pytest.mark.parametrize(("reynolds", "roughness"), [(1e5, 0.0), (2e6, 0.0), (2e6, 2e-4)])
+def test_the_log_law_carries_the_bulk_velocity_of_its_friction(reynolds, roughness):
+    bulk = reynolds * VISCOSITY / (2 * PIPE_RADIUS)
+    u_star = bulk * np.sqrt(friction_factor(reynolds, roughness / (2 * PIPE_RADIUS)) / 8)
+    mean = flow_rate(log_law(u_star, roughness)) / (np.pi * PIPE_RADIUS**2)
+    assert mean == pytest.approx(bulk, rel=0.03)
+
+
+def test_at_the_wall_the_log_law_gives_way_to_viscous_shear():
+    u = log_law(0.002)
+    assert u[-1] == 0
+    assert VISCOSITY * (u[-2] - u[-1]) / (R[-1] - R[-2]) == pytest.approx(0.002**2, rel=1e-6)
+    assert (np.diff(u) < 0).all()
+
+
+def test_a_wall_that_is_rough_enough_makes_viscosity_irrelevant():
+    smooth, rough = (
+        [log_law(0.1, roughness, viscosity)[0] for viscosity in (1e-6, 1e-7)]
+        for roughness in (0.0, 5e-3)
+    )
+    assert smooth[1] > 1.15 * smooth[0]
+    assert rough[1] == pytest.approx(rough[0], rel=2e-3)
+
+
+def test_a_log_law_follows_its_flow_and_rests_with_it():
+    np.testing.assert_array_equal(log_law(-0.05), -log_law(0.05))
+    assert (log_law(0.0) == 0).all()

@@ -1,6 +1,7 @@
 """Numbers from the fields of a run: pure functions of arrays, in SI units."""
 
 from mpsdem.analysis.front import Extent, extent
+from mpsdem.analysis.pipe_flow import friction_velocity, laminar_profile, turbulent_profile
 from mpsdem.analysis.profiles import (
     height_edges,
     slab_area,
@@ -14,10 +15,13 @@ __all__ = [
     "Extent",
     "Silhouette",
     "extent",
+    "friction_velocity",
     "height_edges",
+    "laminar_profile",
     "silhouette",
     "slab_area",
     "slab_volume",
+    "turbulent_profile",
     "velocity_over_height",
     "volume_fraction_over_height",
 ]
