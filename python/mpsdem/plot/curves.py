@@ -16,14 +16,14 @@ from mpsdem.analysis import (
     velocity_over_height,
     volume_fraction_over_height,
 )
-from mpsdem.plot.frames import chosen_frames, heading, when
+from mpsdem.plot.drawing import curve_figure, legend_beside
+from mpsdem.plot.frames import chosen_frames, mean_of, second_half, when
 from mpsdem.plot.style import ACCENTS, FAINT, INK, style, time_colours
 from mpsdem.results import Results
 
 FloatArray = NDArray[np.float64]
 
 _SLABS = 40
-_MOST_MEANED = 100  # frames, as a mean over more does not change on paper
 
 
 def positions_over_time(results: Results) -> Figure:
@@ -43,7 +43,7 @@ def positions_over_time(results: Results) -> Figure:
     x = results.solids.unwrapped_position[:, :, 0]
     cluster = extent(x)
     with style():
-        figure, axes = _figure(results, "front, centre and tail of the solids")
+        figure, axes = curve_figure(results, "front, centre and tail of the solids")
         axes.fill_between(
             time, cluster.last, cluster.first, color=FAINT, alpha=0.35, linewidth=0,
             label="all solids",
@@ -69,7 +69,7 @@ def positions_over_time(results: Results) -> Figure:
         axes.axhline(case.pipe.length, color=INK, linewidth=0.8, zorder=1)
         axes.text(time[-1] or 1.0, case.pipe.length, "outlet ", ha="right", va="bottom", size=8)
         axes.set(xlabel="time (s)", ylabel="distance from the inlet, laps added up (m)")
-        _legend(axes)
+        legend_beside(axes)
     return figure
 
 
@@ -98,13 +98,14 @@ def solids_velocity_over_height(results: Results, times: Sequence[float] | None 
         )
 
     with style():
-        figure, axes = _figure(results, "velocity over height", size=(6.4, 4.4))
+        figure, axes = curve_figure(results, "velocity over height", size=(6.4, 4.4))
         if results.has_liquid:
-            r, u = results.liquid.profile_radius, results.liquid.profile_velocity
+            r = results.liquid.profile_radius
+            u, label = _liquid_profile(results)
             height = radius + np.concatenate([-r[::-1], r])
             axes.plot(
                 np.concatenate([u[::-1], u]), height, color=INK, linewidth=1.0, linestyle="--",
-                label="liquid, prescribed",
+                label=label,
             )  # fmt: skip
         if results.has_solids:
             _over_height(axes, results, times, edges, profile)
@@ -141,7 +142,7 @@ def solids_fraction_over_height(results: Results, times: Sequence[float] | None 
         )
 
     with style():
-        figure, axes = _figure(results, "volume fraction over height", size=(6.4, 4.4))
+        figure, axes = curve_figure(results, "volume fraction over height", size=(6.4, 4.4))
         _over_height(axes, results, times, edges, profile)
         axes.set_xlabel("volume fraction of the solids, mean over the pipe (-)")
         axes.set_xlim(left=0)
@@ -166,7 +167,7 @@ def pressure_gradient_over_time(results: Results) -> Figure:
     second_half = time >= time[-1] / 2
     mean = float(gradient[second_half].mean())
     with style():
-        figure, axes = _figure(results, "pressure loss along the pipe")
+        figure, axes = curve_figure(results, "pressure loss along the pipe")
         axes.plot(time, gradient, color=ACCENTS[2], linewidth=1.0)
         axes.hlines(
             mean, time[second_half][0], time[-1], color=ACCENTS[0],
@@ -175,7 +176,7 @@ def pressure_gradient_over_time(results: Results) -> Figure:
         axes.set(xlim=(time[0], time[-1] or 1.0), xlabel="time (s)")
         axes.set_ylabel("pressure loss, static head apart (Pa/m)")
         _keep_to_the_usual(axes, gradient)
-        _legend(axes)
+        legend_beside(axes)
     return figure
 
 
@@ -196,13 +197,13 @@ def _keep_to_the_usual(axes: Axes, values: FloatArray) -> None:
         )
 
 
-def _figure(
-    results: Results, subject: str, size: tuple[float, float] = (8.0, 4.0)
-) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=size, layout="constrained")
-    axes = figure.add_subplot()
-    axes.set_title(heading(results, subject))
-    return figure, axes
+def _liquid_profile(results: Results) -> tuple[FloatArray, str]:
+    liquid = results.liquid
+    if liquid.is_prescribed:
+        return liquid.profile_velocity, "liquid, prescribed"
+    profile = liquid.velocity_profile
+    mean, span = mean_of(results, second_half(results), lambda frame: profile[frame])
+    return mean, f"liquid, {span}"
 
 
 def _over_height(
@@ -216,21 +217,12 @@ def _over_height(
     frames = chosen_frames(results, times)
     for frame, colour in zip(frames, time_colours(len(frames)), strict=True):
         axes.plot(profile(frame), height, color=colour, label=when(results.time[frame]))
-    later = np.flatnonzero(results.time >= results.time[-1] / 2)
-    if later.size > 1:
-        some = later[:: -(-later.size // _MOST_MEANED)]
-        mean = np.ma.masked_invalid([profile(int(frame)) for frame in some]).mean(axis=0)
-        start, end = results.time[later[[0, -1]]]
-        axes.plot(
-            mean.filled(np.nan), height, color=FAINT, linewidth=5, zorder=1,
-            label=f"mean, {when(start)} to {when(end)}",
-        )  # fmt: skip
+    later = second_half(results)
+    if len(later) > 1:
+        mean, span = mean_of(results, later, profile)
+        axes.plot(mean, height, color=FAINT, linewidth=5, zorder=1, label=f"mean, {span}")
 
 
 def _finish_height(axes: Axes, radius: float) -> None:
     axes.set(ylim=(0, 2 * radius), ylabel="height above the bottom of the bore (m)")
-    _legend(axes)
-
-
-def _legend(axes: Axes) -> None:
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    legend_beside(axes)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from textwrap import shorten
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mpsdem.results import Results, ResultsError
 
+FloatArray = NDArray[np.float64]
+
 _HALVINGS = 4
+_MOST_MEANED = 100  # frames, as a mean over more does not change on paper
 _LONGEST_TITLE = 44  # characters that leave room for the subject
 
 
@@ -38,6 +42,21 @@ def chosen_frames(results: Results, times: Sequence[float] | None = None) -> lis
     if times is None or not len(times):
         times = [0.0, *(results.time[-1] / 2**k for k in range(_HALVINGS, -1, -1))]
     return sorted({int(np.abs(results.time - time).argmin()) for time in times})
+
+
+def second_half(results: Results) -> list[int]:
+    """Frames of the second half of the run, by time; at most some hundred, evenly taken."""
+    later = np.flatnonzero(results.time >= results.time[-1] / 2)
+    return [int(frame) for frame in later[:: -(-later.size // _MOST_MEANED)]]
+
+
+def mean_of(
+    results: Results, frames: Sequence[int], values: Callable[[int], FloatArray]
+) -> tuple[FloatArray, str]:
+    """Mean over frames of what is not NaN, and from when to when it goes."""
+    mean = np.ma.masked_invalid([values(frame) for frame in frames]).mean(axis=0)
+    start, end = results.time[frames[0]], results.time[frames[-1]]
+    return mean.filled(np.nan), f"{when(start)} to {when(end)}" if end > start else when(end)
 
 
 def when(time: float) -> str:
