@@ -7,15 +7,26 @@ from mpsdem.plot.curves import (
     solids_velocity_over_height,
 )
 from mpsdem.plot.figures import save_figures
+from mpsdem.plot.liquid_curves import (
+    liquid_velocity_profile,
+    pressure_along_axis,
+    solver_history,
+)
+from mpsdem.plot.liquid_scenes import liquid_middle_plane, liquid_sections
 from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
 
 __all__ = [
     "cross_sections",
+    "liquid_middle_plane",
+    "liquid_sections",
+    "liquid_velocity_profile",
     "positions_over_time",
+    "pressure_along_axis",
     "pressure_gradient_over_time",
     "save_figures",
     "side_view",
     "silhouettes",
     "solids_fraction_over_height",
     "solids_velocity_over_height",
+    "solver_history",
 ]

@@ -14,6 +14,12 @@ from mpsdem.plot.curves import (
     solids_fraction_over_height,
     solids_velocity_over_height,
 )
+from mpsdem.plot.liquid_curves import (
+    liquid_velocity_profile,
+    pressure_along_axis,
+    solver_history,
+)
+from mpsdem.plot.liquid_scenes import liquid_middle_plane, liquid_sections
 from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
 from mpsdem.plot.style import DOTS_PER_INCH
 from mpsdem.results import Results
@@ -69,3 +75,10 @@ def _drawings(
     yield "velocity", lambda: solids_velocity_over_height(results, times)
     if "pressure_gradient" in results.diagnostics:
         yield "pressure_gradient", lambda: pressure_gradient_over_time(results)
+    if results.has_liquid and not results.liquid.is_prescribed:
+        if results.liquid.has_particles:
+            yield "liquid_sections", lambda: liquid_sections(results, times)
+            yield "liquid_middle_plane", lambda: liquid_middle_plane(results, times)
+        yield "liquid_profile", lambda: liquid_velocity_profile(results, times)
+        yield "liquid_pressure", lambda: pressure_along_axis(results, times)
+        yield "liquid_solver", lambda: solver_history(results)

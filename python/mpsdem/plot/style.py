@@ -11,6 +11,7 @@ from matplotlib.colors import Colormap, ListedColormap
 from matplotlib.figure import Figure
 
 SPEED_COLOURS = "viridis"
+PRESSURE_COLOURS = "RdBu_r"
 INK = "#222222"  # text, walls
 FAINT = "#b8b8b8"  # walls of the bore, grid
 BORE = "#f3f6f9"  # inside of the bore
