@@ -104,6 +104,7 @@ def particle_frame(time, case):
     }
     diagnostics = {
         "bulk_velocity": BULK,
+        "pressure_gradient": 2 * case.liquid.density * FRICTION_VELOCITY**2 / radius,
         "pressure_iterations": 12 + np.sin(time) if time else 0.0,
         "pressure_residual": 9e-4 if time else 0.0,
         "density_scatter": 0.017 - 0.005 * np.exp(-time),

@@ -9,9 +9,21 @@ import pytest
 from matplotlib.collections import EllipseCollection
 from matplotlib.image import imread
 from matplotlib.patches import Circle
-from synthetic_results import CASE, CLEAR, TIMES, cluster, frame, open_writer, write_run
+from synthetic_results import (
+    CASE,
+    CLEAR,
+    FRICTION_VELOCITY,
+    LAMINAR,
+    TIMES,
+    cluster,
+    frame,
+    mean_velocity,
+    open_writer,
+    write_run,
+)
 
 from mpsdem import plot
+from mpsdem.case import Case
 from mpsdem.plot import save_figures
 from mpsdem.results import OutputError, Results, ResultsError
 
@@ -24,11 +36,31 @@ FIGURES = [
     plot.solids_fraction_over_height,
     plot.pressure_gradient_over_time,
 ]
+LIQUID_FIGURES = [
+    plot.liquid_sections,
+    plot.liquid_middle_plane,
+    plot.liquid_velocity_profile,
+    plot.pressure_along_axis,
+    plot.solver_history,
+]
+DRY = Case(**CASE.model_dump(exclude={"liquid"}))
+MEANS = {"liquid_profile", "liquid_pressure", "liquid_solver"}
+PICTURES = {"liquid_sections", "liquid_middle_plane"}
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     return Results(write_run(tmp_path_factory.mktemp("run")))
+
+
+@pytest.fixture(scope="module")
+def particles(tmp_path_factory):
+    """A run of clear liquid whose particles were recorded."""
+    return Results(write_run(tmp_path_factory.mktemp("run"), CLEAR, liquid="particles"))
+
+
+def with_picture(figure):
+    return [axes for axes in figure.axes if axes.images]
 
 
 def drawn_spheres(axes):
@@ -64,9 +96,25 @@ def test_clear_liquid_gets_the_figures_of_the_liquid(tmp_path):
         plot.side_view(results)
 
 
-def test_a_run_of_one_frame_is_drawn(tmp_path):
-    results = Results(write_run(tmp_path, times=TIMES[:1]))
-    assert len(save_figures(results, tmp_path / "figures")) == 7
+@pytest.mark.parametrize(
+    ("liquid", "of_liquid"),
+    [("prescribed", set()), ("particles", MEANS | PICTURES), ("unrecorded", MEANS)],
+)
+@pytest.mark.parametrize("case", [CASE, CLEAR], ids=["solids", "clear"])
+def test_a_run_of_one_frame_is_drawn(tmp_path, case, liquid, of_liquid):
+    results = Results(write_run(tmp_path, case, TIMES[:1], liquid))
+    drawn = {path.stem for path in save_figures(results, tmp_path / "figures")}
+    assert {stem for stem in drawn if stem.startswith("liquid")} == of_liquid
+    assert len(drawn - of_liquid) == (2 if case is CLEAR else 7)
+
+
+def test_a_dry_run_is_drawn(tmp_path):
+    with open_writer(tmp_path, DRY) as writer:
+        writer.append(0.0, solids=frame(0.0)["solids"], diagnostics={"contacts": 3})
+    drawn = {path.stem for path in save_figures(Results(tmp_path), tmp_path / "figures")}
+    assert "velocity" in drawn
+    assert "pressure_gradient" not in drawn
+    assert not any(stem.startswith("liquid") for stem in drawn)
 
 
 def test_the_side_view_shows_each_solid_where_it_is_and_as_large_as_it_is(results):
@@ -137,11 +185,11 @@ def test_figures_take_the_frames_nearest_to_the_times(results):
     assert len(with_spheres(plot.side_view(results, times=[7.9, 8.0, 99.0]))) == 1
 
 
-@pytest.mark.parametrize("draw", FIGURES, ids=lambda draw: draw.__name__)
-def test_every_labelled_axis_has_its_unit(results, draw):
+@pytest.mark.parametrize("draw", FIGURES + LIQUID_FIGURES, ids=lambda draw: draw.__name__)
+def test_every_labelled_axis_has_its_unit(results, particles, draw):
     labels = [
         label
-        for axes in draw(results).axes
+        for axes in draw(particles if draw in LIQUID_FIGURES else results).axes
         for label in (axes.get_xlabel(), axes.get_ylabel())
         if label
     ]
@@ -166,6 +214,116 @@ def test_a_start_up_peak_does_not_flatten_the_pressure_loss_after_it(tmp_path):
     bottom, top = axes.get_ylim()
     assert 55 < bottom < 59 < 61 < top < 65
     assert any("3000" in text.get_text() for text in axes.texts)
+
+
+def test_sections_of_the_liquid_are_fast_inside_slow_outside_and_cut_at_the_bore(particles):
+    figure = plot.liquid_sections(particles, times=[0.0, 8.0])
+    pictures = with_picture(figure)
+    assert len(pictures) == 4
+    for axes in pictures:
+        assert axes.get_aspect() == 1.0
+        assert {p.radius for p in axes.patches} == {CASE.pipe.radius}
+        assert axes.images[0].get_clip_path() is not None
+    velocity, pressure = (axes.images[0].get_array() for axes in (pictures[0], pictures[2]))
+    n = velocity.shape[0]
+    ring = np.hypot(*(np.indices(velocity.shape) - (n - 1) / 2)) / (n / 2 / 1.03)
+    assert velocity[ring < 0.3].mean() > 1.2 * velocity[(ring > 0.9) & (ring < 1)].mean()
+    assert velocity[ring < 1].min() > 0.1  # the particles of the wall are at rest
+    assert abs(pressure[ring < 1].mean()) < 1.0  # not the 200 Pa that all have in common
+
+
+def test_times_of_a_section_share_their_colours(particles):
+    first, second, *_ = with_picture(plot.liquid_sections(particles, times=[0.0, 8.0]))
+    assert first.images[0].get_clim() == second.images[0].get_clim()
+
+
+def test_the_middle_plane_shows_what_goes_where(tmp_path):
+    fields = frame(0.0, CLEAR, "particles")
+    position, velocity = fields["liquid"]["position"], fields["liquid"]["velocity"]
+    velocity[:, 0] = np.where((position[:, 0] > 3.0) & (position[:, 2] > 0), 2.0, 1.0)
+    velocity[np.abs(position[:, 1]) > 0.05, 0] = 9.0  # far from the plane
+    with open_writer(tmp_path, CLEAR, "particles") as writer:
+        writer.append(0.0, **fields)
+    (axes,) = with_picture(plot.liquid_middle_plane(Results(tmp_path)))
+    picture = axes.images[0].get_array()
+    rows, columns = picture.shape
+    right = slice(columns * 4 // 5, None)
+    assert (picture[:, : columns * 7 // 10] == 1.0).all()
+    assert (picture[rows * 7 // 10 :, right] == 2.0).all()
+    assert (picture[: rows * 3 // 10, right] == 1.0).all()
+
+
+def test_pictures_of_a_liquid_that_was_not_recorded_are_refused(tmp_path):
+    results = Results(write_run(tmp_path, CLEAR, TIMES[:1], "unrecorded"))
+    with pytest.raises(ResultsError, match="recorded no particles"):
+        plot.liquid_sections(results)
+    prescribed = Results(write_run(tmp_path / "prescribed", CLEAR, TIMES[:1]))
+    with pytest.raises(ResultsError, match="no liquid that is computed"):
+        plot.solver_history(prescribed)
+
+
+def curve(axes, label):
+    (line,) = [line for line in axes.lines if label in line.get_label()]
+    return line.get_xdata(), line.get_ydata()
+
+
+@pytest.mark.parametrize("case", [CLEAR, LAMINAR], ids=["log law", "parabola"])
+def test_a_profile_that_obeys_its_law_lies_on_it(tmp_path, case, request):
+    results = Results(write_run(tmp_path, case, liquid="particles"))
+    axes, *wall_units = plot.liquid_velocity_profile(results).axes
+    r, law = curve(axes, request.node.callspec.id)
+    inner = r < 0.95 * case.pipe.radius
+    np.testing.assert_allclose(law[inner], mean_velocity(r, case)[inner], rtol=2e-3)
+    assert law[-1] == 0
+    r, mean = curve(axes, "mean")
+    assert len(r) == 19  # the ring round the axis is empty
+    np.testing.assert_allclose(mean, mean_velocity(r, case), rtol=0.01)
+    assert len(wall_units) == (case is CLEAR)
+
+
+def test_wall_units_are_those_of_the_friction(particles):
+    _, axes = plot.liquid_velocity_profile(particles).axes
+    y_plus, u_plus = curve(axes, "liquid")
+    np.testing.assert_allclose(y_plus.max(), FRICTION_VELOCITY * 0.0975 / 1e-6, rtol=0.05)
+    np.testing.assert_allclose(u_plus[-1], 5.2 + np.log(y_plus[-1]) / 0.41, rtol=0.02)
+
+
+def test_drag_on_solids_is_no_friction_of_the_wall(tmp_path):
+    drag = 1000.0  # [N] on all solids
+    loss = drag / (np.pi * CASE.pipe.radius**2 * CASE.pipe.length)
+    with open_writer(tmp_path, liquid="particles") as writer:
+        fields = frame(0.0, CASE, "particles")
+        fields["diagnostics"]["drag_force"] = [drag, 0.0, 0.0]
+        fields["diagnostics"]["pressure_gradient"] += loss
+        writer.append(0.0, **fields)
+    labels = plot.liquid_velocity_profile(Results(tmp_path)).axes[0].get_legend().get_texts()
+    assert any(f"u* = {FRICTION_VELOCITY:.3g} m/s" in text.get_text() for text in labels)
+
+
+def test_the_pressure_falls_along_the_pipe_by_its_mean_gradient(particles):
+    above, below = plot.pressure_along_axis(particles, times=[8.0]).axes
+    x, p = above.lines[0].get_data()
+    assert (p[-1] - p[0]) / (x[-1] - x[0]) == pytest.approx(
+        -particles.pressure_gradient[-1], rel=0.02
+    )
+    assert np.abs(below.lines[0].get_ydata()).max() <= 2.0
+
+
+def test_the_solver_history_leaves_out_what_no_step_has_made_yet(particles):
+    axes = {a.get_ylabel().split("\n")[0]: a for a in plot.solver_history(particles).axes}
+    assert axes["iterations"].lines[0].get_xdata()[0] == TIMES[1]
+    assert axes["scatter of the"].lines[0].get_xdata()[0] == 0
+    assert axes["largest"].get_yscale() == "log"
+    cut, held = axes["since the last"].lines
+    assert cut.get_ydata().sum() == 1
+    assert held.get_ydata().max() == 3
+
+
+def test_the_velocity_over_height_shows_a_computed_liquid_as_its_mean(particles):
+    (axes,) = plot.solids_velocity_over_height(particles).axes
+    u, height = curve(axes, "liquid, mean")
+    r = np.abs(height - CLEAR.pipe.radius)
+    np.testing.assert_allclose(u, mean_velocity(r, CLEAR), rtol=0.01)
 
 
 def test_drawing_changes_no_settings_and_needs_no_display(results):

@@ -8,7 +8,17 @@ import sys
 import h5py
 import numpy as np
 import pytest
-from synthetic_results import CASE, CLEAR, PROVENANCE, cluster, frame, open_writer, write_run
+from synthetic_results import (
+    CASE,
+    CLEAR,
+    KIND,
+    PROVENANCE,
+    cluster,
+    frame,
+    open_writer,
+    particle_frame,
+    write_run,
+)
 
 from mpsdem.results import Results, ResultsError, write_summary
 from mpsdem.results.summary import SUMMARY_KEYS
@@ -97,6 +107,39 @@ def test_a_run_of_clear_liquid_has_no_solids(tmp_path):
     assert not results.has_solids
     with pytest.raises(ResultsError, match="has no solids"):
         results.solids  # noqa: B018
+
+
+def test_a_liquid_of_particles_is_read_as_it_was_written(tmp_path):
+    results = Results(write_run(tmp_path, CLEAR, [0.0, 0.5, 1.0], "particles"))
+    liquid, (fields, numbers) = results.liquid, particle_frame(0.5, CLEAR)
+    assert liquid.has_particles
+    assert not liquid.is_prescribed
+    assert liquid.kind.dtype == np.int8
+    np.testing.assert_array_equal(liquid.kind, KIND)
+    for name, values in fields.items():
+        np.testing.assert_array_equal(getattr(liquid, name)[1], values)
+    for name, value in numbers.items():
+        assert results.diagnostics[name][1] == value
+    assert results.diagnostics["clamped"].dtype == np.int64
+    assert liquid.section_position.shape == liquid.section_pressure.shape[1:]
+    assert liquid.profile_radius.shape == liquid.velocity_profile.shape[1:]
+    assert liquid.pressure.unit == "Pa"
+    with pytest.raises(ResultsError, match="profile_velocity"):
+        liquid.profile_velocity  # noqa: B018
+
+
+def test_a_liquid_may_leave_its_particles_unrecorded(tmp_path):
+    liquid = Results(write_run(tmp_path, CLEAR, [0.0], "unrecorded")).liquid
+    assert not liquid.has_particles
+    assert liquid.velocity_profile.shape == (1, 20)
+    with pytest.raises(ResultsError, match="position"):
+        liquid.position  # noqa: B018
+
+
+def test_a_prescribed_liquid_has_no_particles(directory):
+    liquid = Results(directory).liquid
+    assert liquid.is_prescribed
+    assert not liquid.has_particles
 
 
 def test_results_can_be_read_while_they_grow(tmp_path):

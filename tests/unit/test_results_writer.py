@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_results import CASE, cluster, frame, open_writer, write_run
+from synthetic_results import CASE, KIND, cluster, frame, open_writer, particle_frame, write_run
 
 from mpsdem.results import OutputError, Results, ResultsError, ResultsWriter
 
@@ -69,6 +69,18 @@ def test_continued_results_equal_those_of_an_undisturbed_run(tmp_path):
     assert continued.case_toml == whole.case_toml
 
 
+def test_a_liquid_of_particles_is_continued_too(tmp_path):
+    write_run(tmp_path, times=[0.0, 0.5, 1.0], liquid="particles")
+    with ResultsWriter.reopen(tmp_path, time=0.5) as writer:
+        writer.append(2.0, **frame(2.0, liquid="particles"))
+    liquid = Results(tmp_path).liquid
+    for k, time_ in enumerate([0.0, 0.5, 2.0]):
+        fields, _ = particle_frame(time_, CASE)
+        np.testing.assert_array_equal(liquid.position[k], fields["position"])
+        np.testing.assert_array_equal(liquid.velocity_profile[k], fields["velocity_profile"])
+    np.testing.assert_array_equal(liquid.kind, KIND)
+
+
 def test_a_run_can_be_continued_from_its_first_frame(tmp_path):
     write_run(tmp_path)
     with ResultsWriter.reopen(tmp_path, time=0.0) as writer:
@@ -97,6 +109,8 @@ def test_frames_come_in_order_and_hold_the_same_fields(tmp_path):
             writer.append(0.0, **frame(0.0))
         with pytest.raises(ValueError, match=r"same fields.*contacts"):
             writer.append(1.0, solids=frame(1.0)["solids"])
+        with pytest.raises(ValueError, match=r"same fields.*pressure"):
+            writer.append(1.0, **frame(1.0), liquid={"pressure": [0.0]})
         with pytest.raises(ValueError, match="colour"):
             writer.append(1.0, diagnostics={"colour": 1.0})
         writer.append(1.0, **frame(1.0))

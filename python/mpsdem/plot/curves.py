@@ -102,6 +102,8 @@ def solids_velocity_over_height(results: Results, times: Sequence[float] | None 
         if results.has_liquid:
             r = results.liquid.profile_radius
             u, label = _liquid_profile(results)
+            known = np.isfinite(u)  # no particle may be in a thin ring round the axis
+            r, u = r[known], u[known]
             height = radius + np.concatenate([-r[::-1], r])
             axes.plot(
                 np.concatenate([u[::-1], u]), height, color=INK, linewidth=1.0, linestyle="--",
@@ -203,7 +205,7 @@ def _liquid_profile(results: Results) -> tuple[FloatArray, str]:
         return liquid.profile_velocity, "liquid, prescribed"
     profile = liquid.velocity_profile
     mean, span = mean_of(results, second_half(results), lambda frame: profile[frame])
-    return mean, f"liquid, {span}"
+    return mean, f"liquid, mean,\n{span}"
 
 
 def _over_height(

@@ -10,8 +10,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree  # type: ignore[import-untyped, unused-ignore]
 
 from mpsdem.plot.frames import heading, when
 from mpsdem.plot.style import BORE, INK, SPEED_COLOURS, axes_at
@@ -23,6 +25,7 @@ STRIP_WIDTH = 8.4  # [in] of a pipe seen from the side
 THINNEST, THICKEST = 0.32, 1.6  # [in] heights of such a strip
 SECTION = 1.35  # [in] diameter of a cross-section
 LEFT, RIGHT, TOP, BOTTOM = 1.2, 0.9, 0.45, 0.6  # [in] margins
+_FINENESS = 150  # pixels of a picture per inch
 
 
 def strips_along(
@@ -69,14 +72,16 @@ def scene_heading(figure: Figure, results: Results, subject: str) -> None:
     figure.text(left, 1 - 0.32 / height, heading(results, subject), weight="bold", size=10)
 
 
-def bore_section(axes: Axes, radius: float) -> None:
-    """An empty cross-section of the bore, of equal scale both ways."""
-    axes.add_patch(Circle((0, 0), radius, facecolor=BORE, edgecolor=INK, linewidth=1.0))
+def bore_section(axes: Axes, radius: float) -> Circle:
+    """An empty cross-section of the bore, of equal scale both ways; returns its outline."""
+    bore = Circle((0, 0), radius, facecolor=BORE, edgecolor=INK, linewidth=1.0)
+    axes.add_patch(bore)
     axes.set(xlim=(-1.03 * radius, 1.03 * radius), ylim=(-1.03 * radius, 1.03 * radius))
     axes.set_aspect("equal")
     axes.grid(visible=False)
     axes.spines[:].set_visible(False)
     axes.set(xticks=[], yticks=[])
+    return bore
 
 
 def ticks_in_metres(axes: Axes, radius: float) -> None:
@@ -123,31 +128,23 @@ def spheres_at(
     axes.add_collection(spheres, autolim=False)
 
 
-def dots_at(
-    axes: Axes,
-    centre: FloatArray,
-    values: FloatArray,
-    norm: Normalize,
-    colours: str,
-    *,
-    area: float,
-) -> None:
-    """Coloured dots, later ones on top, as large as to just cover an area [m2] that they share."""
-    size = np.full(len(centre), 1.2 * np.sqrt(area / max(len(centre), 1)))
-    dots = EllipseCollection(
-        widths=size,
-        heights=size,
-        angles=np.zeros_like(size),
-        units="xy",
-        offsets=centre,
-        offset_transform=axes.transData,
-        linewidths=0,
-        cmap=colours,
-        norm=norm,
-        zorder=2,
+def cells_at(
+    axes: Axes, centre: FloatArray, values: FloatArray, norm: Normalize, colours: str
+) -> AxesImage:
+    """A picture over the whole axes in which each point has the colour of the nearest particle."""
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    box = axes.get_window_extent()
+    columns, rows = (
+        max(2, round(_FINENESS * s / axes.figure.dpi)) for s in (box.width, box.height)
     )
-    dots.set_array(values)
-    axes.add_collection(dots, autolim=False)
+    x = left + (np.arange(columns) + 0.5) * (right - left) / columns
+    y = bottom + (np.arange(rows) + 0.5) * (top - bottom) / rows
+    points = np.stack(np.meshgrid(x, y), axis=-1)
+    nearest = cKDTree(centre).query(points)[1]
+    return axes.imshow(
+        values[nearest], cmap=colours, norm=norm, extent=(left, right, bottom, top), origin="lower",
+        interpolation="nearest", aspect="auto", zorder=2,
+    )  # fmt: skip
 
 
 def colour_bar(

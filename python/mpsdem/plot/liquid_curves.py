@@ -29,6 +29,7 @@ _HISTORY = (
     ("since the last\nframe (-)", ("clamped", "held_back")),
 )
 _COUNTED = {"clamped": "pressures cut", "held_back": "held back\nfrom the wall"}
+_SINCE_LAST_FRAME = {"pressure_iterations", "pressure_residual", *_COUNTED}
 _COLOURS = (ACCENTS[2], ACCENTS[0])
 _POINTS: dict[str, Any] = {"linewidth": 1.0, "marker": ".", "markersize": 3}
 
@@ -143,17 +144,20 @@ def solver_history(results: Results) -> Figure:
         panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
         panels[0].set_title(heading(results, "how the liquid was solved"))
         for axes, (label, curves) in zip(panels, rows, strict=True):
+            counts = curves.keys() <= _COUNTED.keys()
             for (name, values), colour in zip(curves.items(), _COLOURS, strict=False):
-                axes.plot(time, values, color=colour, label=_COUNTED.get(name), **_POINTS)
+                since = slice(name in _SINCE_LAST_FRAME, None)
+                axes.plot(
+                    time[since], values[since], color=colour, label=_COUNTED.get(name), **_POINTS
+                )
             highest = float(max(values.max() for values in curves.values()))
             if "pressure_residual" in curves and highest > 0:
-                axes.set_yscale("log", nonpositive="mask")
+                lowest = float(min(values[values > 0].min() for values in curves.values()))
+                axes.set(yscale="log", ylim=(lowest / 10, highest * 10))
             else:
                 axes.set_ylim(0, 1.12 * highest or 1.0)
-                axes.yaxis.set_major_locator(
-                    MaxNLocator(3, integer=curves.keys() <= _COUNTED.keys())
-                )
-            if curves.keys() <= _COUNTED.keys():
+                axes.yaxis.set_major_locator(MaxNLocator(3, integer=counts))
+            if counts:
                 legend_beside(axes)
             axes.set_ylabel(label)
         panels[-1].set(xlim=(time[0], time[-1] or 1.0), xlabel="time (s)")

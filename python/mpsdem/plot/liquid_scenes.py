@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
 from mpsdem.plot.drawing import (
@@ -19,22 +20,21 @@ from mpsdem.plot.drawing import (
     THINNEST,
     TOP,
     bore_section,
+    cells_at,
     colour_bar,
-    dots_at,
     scene_heading,
     strips_along,
     ticks_in_metres,
 )
 from mpsdem.plot.frames import chosen_frames, when
-from mpsdem.plot.style import PRESSURE_COLOURS, SPEED_COLOURS, axes_at, style
-from mpsdem.results import Results
+from mpsdem.plot.style import INK, PRESSURE_COLOURS, SPEED_COLOURS, axes_at, style
+from mpsdem.results import Results, ResultsError
+from mpsdem.results.reader import LIQUID_KIND
 
 FloatArray = NDArray[np.float64]
 
-_LIQUID = 2  # the kind of a particle of liquid
 _FEWEST, _MOST = 300, 900  # particles in a section: to fill it, and to tell them apart
-_STRIP_MOST = 5000  # particles in a lengthwise picture
-_STRIP_SHARE = 0.15  # of the bore's radius: as far from the middle plane a particle is shown
+_MOST_LENGTHWISE = 20_000
 _USUAL = (0.01, 0.99)  # quantiles between which the colours go
 
 
@@ -51,17 +51,25 @@ def liquid_sections(results: Results, times: Sequence[float] | None = None) -> F
     Returns
     -------
     Figure
-        Seen against the flow, one column per time. Shows the particles within half a bore radius of
-        the section; of many the nearest, of few also farther ones. Pressure about its mean over
-        the recorded particles, mean gradient and static head apart.
+        Seen against the flow, one column per time; each point has the colour of the nearest
+        particle among those within half a bore radius of the section, fewer of many and more of
+        few. Pressure less its mean over the recorded particles, mean gradient and head apart.
     """
     pipe = results.case.pipe
     frames = chosen_frames(results, times)
     liquids = [_particles(results, frame) for frame in frames]
-    slabs = [_slab(liquid.position[:, 0], pipe.length, pipe.radius) for liquid in liquids]
+    slabs = [
+        _nearest(liquid.position[:, 0] - pipe.length / 2, pipe.radius / 2, _MOST)
+        for liquid in liquids
+    ]
     rows = (
-        ("velocity", [x.velocity for x in liquids], SPEED_COLOURS, "axial velocity (m/s)"),
-        ("pressure", [x.pressure for x in liquids], PRESSURE_COLOURS, "pressure (Pa)"),
+        ("velocity", [x.velocity for x in liquids], SPEED_COLOURS, "axial velocity\n(m/s)"),
+        (
+            "pressure",
+            [x.pressure for x in liquids],
+            PRESSURE_COLOURS,
+            "pressure less its\nmean (Pa)",
+        ),
     )
     gap, above, between = 0.12, 0.25, 0.25
     with style():
@@ -83,14 +91,13 @@ def liquid_sections(results: Results, times: Sequence[float] | None = None) -> F
                     SECTION,
                 )
                 slab = slabs[column]
-                bore_section(axes, pipe.radius)
-                dots_at(
-                    axes,
-                    liquids[column].position[slab, 1:],
-                    values[column][slab],
-                    norm,
-                    colours,
-                    area=np.pi * pipe.radius**2,
+                bore = bore_section(axes, pipe.radius)
+                centre = liquids[column].position[slab, 1:]
+                cells = cells_at(axes, centre, values[column][slab], norm, colours)
+                axes.set_aspect("equal")
+                cells.set_clip_path(bore)
+                axes.add_patch(
+                    Circle((0, 0), pipe.radius, fill=False, edgecolor=INK, linewidth=1.0, zorder=3)
                 )
                 if row == 0:
                     axes.set_title(when(results.time[frame]), loc="center", fontsize=9)
@@ -119,8 +126,8 @@ def liquid_middle_plane(results: Results, times: Sequence[float] | None = None) 
     Returns
     -------
     Figure
-        One strip per time, the earliest on top; shows the particles within 0.15 bore radii of the
-        plane, of many the nearest.
+        One strip per time, the earliest on top; each point has the colour of the nearest particle
+        among those within 0.15 bore radii of the plane.
     """
     pipe = results.case.pipe
     frames = chosen_frames(results, times)
@@ -130,17 +137,9 @@ def liquid_middle_plane(results: Results, times: Sequence[float] | None = None) 
         figure, strips = strips_along(results, frames, "liquid in the middle plane", THINNEST)
         norm = _norm(values, even=False)
         for axes, liquid in zip(strips, liquids, strict=True):
-            aside = np.abs(liquid.position[:, 1])
-            order = np.argsort(aside, kind="stable")
-            near = order[aside[order] <= _STRIP_SHARE * pipe.radius][:_STRIP_MOST][::-1]
-            dots_at(
-                axes,
-                liquid.position[near][:, [0, 2]],
-                liquid.velocity[near],
-                norm,
-                SPEED_COLOURS,
-                area=2 * pipe.radius * pipe.length,
-            )
+            near = _nearest(liquid.position[:, 1], 0.15 * pipe.radius, _MOST_LENGTHWISE)
+            centre = liquid.position[near][:, [0, 2]]
+            cells_at(axes, centre, liquid.velocity[near], norm, SPEED_COLOURS)
         colour_bar(
             figure, strips, norm, SPEED_COLOURS, label="axial velocity (m/s)", values=_range(values)
         )
@@ -158,32 +157,32 @@ class _Particles:
 
 def _particles(results: Results, frame: int) -> _Particles:
     liquid = results.liquid
-    flows = liquid.kind == _LIQUID
+    if not liquid.has_particles:
+        raise ResultsError(f"the run in {results.directory} recorded no particles of liquid")
+    flows = liquid.kind == LIQUID_KIND
     pressure = liquid.pressure[frame][flows]
     return _Particles(
         position=liquid.position[frame][flows],
         velocity=liquid.velocity[frame][flows, 0],
-        pressure=pressure - pressure.mean() if pressure.size else pressure,
+        pressure=pressure - pressure.mean(),
     )
 
 
-def _slab(x: FloatArray, length: float, radius: float) -> NDArray[np.intp]:
-    """The particles of a section halfway along the pipe, those nearest to it last."""
-    away = np.abs(x - length / 2)
-    count = np.clip(np.count_nonzero(away <= radius / 2), _FEWEST, _MOST)
-    return np.argsort(away, kind="stable")[:count][::-1]
+def _nearest(away: FloatArray, reach: float, most: int) -> NDArray[np.intp]:
+    """The particles within reach of a plane [m], as long as they are neither few nor many."""
+    away = np.abs(away)
+    count = np.clip(np.count_nonzero(away <= reach), _FEWEST, most)
+    return np.argsort(away, kind="stable")[:count]
 
 
 def _range(values: Sequence[FloatArray]) -> tuple[float, float]:
     every = np.concatenate(values)
-    return (float(every.min()), float(every.max())) if every.size else (0.0, 0.0)
+    return float(every.min()), float(every.max())
 
 
 def _norm(values: Sequence[FloatArray], *, even: bool) -> Normalize:
-    """Colours over what is usual, with zero at their end, or in their middle where `even`."""
-    every = np.concatenate(values)
-    low, high = np.quantile(every, _USUAL) if every.size else (0.0, 0.0)
-    low, high = float(min(low, 0.0)), float(max(high, 0.0))
+    """Colours over what is usual; with zero in their middle where `even`."""
+    low, high = (float(q) for q in np.quantile(np.concatenate(values), _USUAL))
     if even:
         low, high = min(low, -high), max(high, -low)
-    return Normalize(low, high) if high > low else Normalize(-1.0 if even else 0.0, 1.0)
+    return Normalize(low, high) if high > low else Normalize(low - 0.5, high + 0.5)

@@ -20,6 +20,8 @@ from mpsdem.results.stored import Field, StoredRun
 
 FloatArray = NDArray[np.float64]
 
+LIQUID_KIND = 2  # of a particle of liquid, among those of the wall
+
 
 class Results:
     """What a run left in its directory; a snapshot if the run still goes on.
@@ -238,8 +240,8 @@ class LiquidResults:
 
     @property
     def has_particles(self) -> bool:
-        """Whether particles of the liquid were recorded."""
-        return "position" in self
+        """Whether particles of the liquid were recorded, apart from those of the wall."""
+        return "position" in self and bool((self.kind == LIQUID_KIND).any())
 
     @property
     def profile_radius(self) -> FloatArray:
