@@ -7,8 +7,10 @@
 namespace mpsdem::bindings {
 
 void bind_geometry(pybind11::module_ m);
+void bind_neighbors(pybind11::module_ m);
 void bind_dem(pybind11::module_ m);
 void bind_mps(pybind11::module_ m);
+void bind_mps_operators(pybind11::module_ m);
 void bind_coupling(pybind11::module_ m);
 
 namespace {
@@ -51,7 +53,10 @@ PYBIND11_MODULE(_core, m) {
           "Threads that a parallel loop may use (OMP_NUM_THREADS, else the processors).");
 
     b::bind_geometry(m.def_submodule("geometry"));
+    b::bind_neighbors(m.def_submodule("neighbors"));
     b::bind_dem(m.def_submodule("dem"));
-    b::bind_mps(m.def_submodule("mps"));
+    const auto mps = m.def_submodule("mps");
+    b::bind_mps(mps);
+    b::bind_mps_operators(mps);
     b::bind_coupling(m.def_submodule("coupling"));
 }

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "core/check.hpp"
+#include "core/vec3.hpp"
+#include "mps/profile/pipe_profile.hpp"
+
+#include <algorithm>
+
+namespace mpsdem::mps {
+
+/// Wall shear from the speed u along the wall at a distance y: the greater of
+///
+///   laminar    u*^2 = nu u / y
+///   log law    u / u* = ln(y+ / (1 + 0.26 k+)) / kappa + B     y+ = y u* / nu,  k+ = k u* / nu
+///
+/// kappa = 0.41, B = 5.2. The two meet at y+ = 11 on a smooth wall. 0.26 = exp(-kappa (8.5 - B))
+/// lets the log law become ln(y / k) / kappa + 8.5 on a fully rough wall, with Colebrook's
+/// transition between.
+/// Sources: Pope (2000), Turbulent Flows, ch. 7; Nikuradse (1933), VDI-Forschungsheft 361;
+/// Colebrook (1939), doi:10.1680/ijoti.1939.13150. Valid to y = 0.2 R, in a pipe beyond it within a
+/// few per cent, and for a roughness k below y; in the buffer layer, y+ from 5 to 30, up to 20 %
+/// low.
+class WallFunction {
+public:
+    WallFunction(Real kinematic_viscosity, Real roughness)
+        : viscosity_(kinematic_viscosity), roughness_(roughness) {
+        require(kinematic_viscosity > 0, "WallFunction: kinematic_viscosity must be > 0 m2/s");
+        require(roughness >= 0, "WallFunction: roughness must be >= 0 m");
+    }
+
+    /// Wall shear stress over density, u*^2 [m2/s2], for speed >= 0 [m/s] and distance > 0 [m].
+    [[nodiscard]] Real shear(Real speed, Real distance) const noexcept {
+        const Real laminar = viscosity_ * speed / distance;
+        const Real log_law = friction_velocity(speed, distance);
+        return std::max(laminar, log_law * log_law);
+    }
+
+private:
+    static constexpr Real b = 5.2;       // [-] smooth wall
+    static constexpr Real rough_b = 8.5; // [-] fully rough wall
+
+    /// u* of the log law, by Newton's method on u* (ln(...) / kappa + B) = u: convex, so that it
+    /// falls monotonically to the root. 0 where y+ is so small that the law has none.
+    [[nodiscard]] Real friction_velocity(Real speed, Real distance) const noexcept {
+        const Real k = std::min(std::exp(-karman * (rough_b - b)) * roughness_, distance);
+        Real u = speed;
+        for (int iteration = 0; iteration < 12; ++iteration) {
+            const Real rough = viscosity_ + k * u; // [m2/s]
+            const Real plus = std::log(distance * u / rough) / karman + b;
+            const Real slope = plus + viscosity_ / (karman * rough);
+            if (!(slope > 0)) return 0;
+            const Real step = (u * plus - speed) / slope;
+            u -= step;
+            if (!(std::abs(step) > 1e-12 * u)) break;
+        }
+        return u;
+    }
+
+    Real viscosity_; // [m2/s] nu
+    Real roughness_; // [m]    k
+};
+
+} // namespace mpsdem::mps
