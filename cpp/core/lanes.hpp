@@ -10,15 +10,11 @@
 /// One text for scalar and vector arithmetic: a kernel written on `T` runs on Real or on Lanes.
 namespace mpsdem {
 
-#if defined(__AVX512F__)
-inline constexpr std::size_t lane_count = 8;
-#elif defined(__AVX__)
+/// Four in every build: three components of a vector and one number that travels with them fill a
+/// register, so a row of a record is loaded at once and four rows turn into columns. Without AVX
+/// the compiler splits it into halves.
 inline constexpr std::size_t lane_count = 4;
-#else
-inline constexpr std::size_t lane_count = 2;
-#endif
 
-/// As many reals as one register of this machine holds.
 using Lanes [[gnu::vector_size(lane_count * sizeof(Real))]] = Real;
 using LaneMask = decltype(Lanes{} < Lanes{});
 
@@ -35,9 +31,34 @@ using LaneMask = decltype(Lanes{} < Lanes{});
 /// Lane k from values[place[k]].
 [[nodiscard]] [[gnu::always_inline]] inline Lanes gather(const Real* values,
                                                          const Index* place) noexcept {
-    Lanes v;
-    for (std::size_t k = 0; k < lane_count; ++k) v[k] = values[place[k]];
-    return v;
+    return Lanes{values[place[0]], values[place[1]], values[place[2]], values[place[3]]};
+}
+
+/// Four solids' or pairs' rows (x, y, z, w), turned: `v.x` holds the x of all four, and so on.
+struct Columns {
+    Vector<Lanes> v;
+    Lanes w;
+};
+
+[[nodiscard]] [[gnu::always_inline]] inline Columns turned(Lanes a, Lanes b, Lanes c,
+                                                           Lanes d) noexcept {
+    constexpr LaneMask even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
+    const Lanes ab = __builtin_shuffle(a, b, even), cd = __builtin_shuffle(c, d, even);
+    const Lanes ab_odd = __builtin_shuffle(a, b, odd), cd_odd = __builtin_shuffle(c, d, odd);
+    return {{__builtin_shuffle(ab, cd, low), __builtin_shuffle(ab_odd, cd_odd, low),
+             __builtin_shuffle(ab, cd, high)},
+            __builtin_shuffle(ab_odd, cd_odd, high)};
+}
+
+/// The way back: row k belongs to solid or pair k, with `w` behind its vector.
+struct Rows {
+    Lanes row[lane_count];
+};
+
+[[nodiscard]] [[gnu::always_inline]] inline Rows turned(const Vector<Lanes>& v,
+                                                        Lanes w = Lanes{}) noexcept {
+    const Columns r = turned(v.x, v.y, v.z, w);
+    return {{r.v.x, r.v.y, r.v.z, r.w}};
 }
 
 [[nodiscard]] inline Real sqrt(Real a) noexcept {
@@ -56,14 +77,14 @@ using LaneMask = decltype(Lanes{} < Lanes{});
     return condition ? yes : no;
 }
 
-[[nodiscard]] [[gnu::always_inline]] inline bool any(LaneMask condition) noexcept {
-#if defined(__AVX512F__)
-    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(condition),
-                                  reinterpret_cast<__m512i>(condition)) != 0;
-#elif defined(__AVX__)
-    return _mm256_movemask_pd(reinterpret_cast<__m256d>(condition)) != 0;
+/// Bit k is set where lane k holds.
+[[nodiscard]] [[gnu::always_inline]] inline unsigned bits(LaneMask condition) noexcept {
+#if defined(__AVX__)
+    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(condition)));
 #else
-    return (condition[0] | condition[1]) != 0;
+    unsigned set = 0;
+    for (unsigned k = 0; k < lane_count; ++k) set |= (condition[k] & 1u) << k;
+    return set;
 #endif
 }
 

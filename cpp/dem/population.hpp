@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/aligned.hpp"
-#include "core/vec3.hpp"
+#include "core/lanes.hpp"
 
 #include <vector>
 
@@ -10,90 +10,61 @@ namespace mpsdem::dem {
 /// What surrounds the solids; only a liquid drags them.
 enum class Medium { dry, liquid };
 
-/// Lanes that the loops over solids take at a time; every array is padded to a multiple of it.
-inline constexpr std::size_t lanes = 8;
-
 /// The solids in sorted order: solids that are near in space are near in memory.
 ///
-/// Fields stand in tiles of `lanes` solids: a tile's values of one field are side by side for
-/// vector loops over solids, and all fields of one solid lie at fixed distances from one address
-/// for gathers. Spin is stored as the surface speed radius * spin, and torque as the torque over
-/// the radius: the contact loop then needs no radius, and both rows of Newton's law share 1 / mass.
+/// A solid is a record of rows of four reals: three components, and one number that travels with
+/// them or zero. A row fills a register, so the contact loop reads and adds whole rows. Two rows
+/// fill a cache line: a contact writes to the last line only. Spin is stored as the surface speed
+/// radius * spin, and torque as the torque over the radius: the contact loop then needs no radius,
+/// and both rows of Newton's law share 1 / mass. What contacts never read stands apart.
 class Population {
 public:
     enum Field : std::size_t {
-        X,
-        Y,
-        Z, // [m]     unwrapped since the last sort
-        VX,
-        VY,
-        VZ, // [m/s]
-        SX,
-        SY,
-        SZ, // [m/s]   radius * spin
-        FX,
-        FY,
-        FZ, // [N]
-        TX,
-        TY,
-        TZ, // [N]     torque / radius
-        AX,
-        AY,
-        AZ, // [m/s2]  acceleration from outside, drag_rate * liquid velocity included
-        INVERSE_MASS,
-        RADIUS,
-        DRAG, // [1/s]   drag_rate
-        UX,
-        UY,
-        UZ, // [m/s]   liquid velocity
-        PX,
-        PY,
-        PZ, // [m]     integral of velocity since forcing was set
-        X0,
-        Y0,
-        Z0, // [m]     position at the last sort
-        field_count
+        X = 0, // [m]     unwrapped since the last sort
+        RADIUS = 3,
+        VX = 4, // [m/s]
+        SX = 8, // [m/s]   radius * spin
+        INVERSE_MASS = 11,
+        AX = 12, // [m/s2]  acceleration from outside, drag_rate * liquid velocity included
+        FX = 16, // [N]
+        TX = 20, // [N]     torque / radius
+        record = 24,
+        PX = 24,   // [m]     integral of velocity since forcing was set
+        UX = 28,   // [m/s]   liquid velocity
+        DRAG = 31, // [1/s]   drag_rate
+        X0 = 32,   // [m]     position at the last sort
+        field_count = 36
     };
-    static constexpr std::size_t tile = field_count * lanes; // values of one tile
+    static constexpr std::size_t rest = field_count - record;
 
     explicit Population(std::size_t count)
-        : size_(count), padded_((count + lanes - 1) / lanes * lanes),
-          values_(padded_ * field_count), id_(count), laps_(count) {
-        for (std::size_t i = count; i < padded_; ++i)
-            at(RADIUS, i) = -1e300; // a padding entry is out of reach of every wall and list
-    }
+        : size_(count), values_(count * record), rest_(count * rest), id_(count), laps_(count) {}
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    [[nodiscard]] std::size_t padded() const noexcept { return padded_; }
 
-    /// Place of solid i in `values`; field f stands f * lanes further.
-    [[nodiscard]] static constexpr std::size_t place(std::size_t i) noexcept {
-        return i / lanes * tile + i % lanes;
-    }
+    /// Record of solid i in `values`.
+    [[nodiscard]] static constexpr std::size_t place(std::size_t i) noexcept { return i * record; }
     [[nodiscard]] static constexpr std::size_t index(std::size_t place) noexcept {
-        return place / tile * lanes + place % lanes;
+        return place / record;
     }
     [[nodiscard]] Real* values() noexcept { return values_.data(); }
     [[nodiscard]] const Real* values() const noexcept { return values_.data(); }
 
-    [[nodiscard]] Real& at(Field f, std::size_t i) noexcept {
-        return values_[place(i) + f * lanes];
+    [[nodiscard]] Real* at(Field f, std::size_t i) noexcept {
+        return f < record ? &values_[i * record + f] : &rest_[i * rest + (f - record)];
     }
-    [[nodiscard]] Real at(Field f, std::size_t i) const noexcept {
-        return values_[place(i) + f * lanes];
+    [[nodiscard]] const Real* at(Field f, std::size_t i) const noexcept {
+        return f < record ? &values_[i * record + f] : &rest_[i * rest + (f - record)];
     }
-    [[nodiscard]] Vec3 vector(Field first, std::size_t i) const noexcept {
-        const Real* v = values() + place(i) + first * lanes;
-        return {v[0], v[lanes], v[2 * lanes]};
+    [[nodiscard]] Vec3 vector(Field f, std::size_t i) const noexcept {
+        const Real* v = at(f, i);
+        return {v[0], v[1], v[2]};
     }
-    void set(Field first, std::size_t i, Vec3 value) noexcept {
-        Real* v = values() + place(i) + first * lanes;
+    void set(Field f, std::size_t i, Vec3 value) noexcept {
+        Real* v = at(f, i);
         v[0] = value.x;
-        v[lanes] = value.y;
-        v[2 * lanes] = value.z;
-    }
-    void add(Field first, std::size_t i, Vec3 value) noexcept {
-        set(first, i, vector(first, i) + value);
+        v[1] = value.y;
+        v[2] = value.z;
     }
 
     /// Identity of the solid at a sorted place: its row in the caller's arrays.
@@ -103,26 +74,33 @@ public:
     [[nodiscard]] std::vector<std::int32_t>& laps() noexcept { return laps_; }
     [[nodiscard]] const std::vector<std::int32_t>& laps() const noexcept { return laps_; }
 
+    /// visit(values) for every array of reals, in a fixed sequence.
+    template <class Visit>
+    void for_each_array(const Visit& visit) {
+        visit(values_);
+        visit(rest_);
+    }
+
     /// Entry k takes what stood at order[k].
     void permute(const std::vector<Index>& order) {
-        AlignedVector<Real> sorted = values_; // keeps the padding
-        for (std::size_t k = 0; k < size_; ++k)
-            for (std::size_t f = 0; f < field_count; ++f)
-                sorted[place(k) + f * lanes] = values_[place(order[k]) + f * lanes];
-        values_ = std::move(sorted);
-        std::vector<Index> id(size_);
-        std::vector<std::int32_t> laps(size_);
-        for (std::size_t k = 0; k < size_; ++k) {
-            id[k] = id_[order[k]];
-            laps[k] = laps_[order[k]];
-        }
-        id_ = std::move(id);
-        laps_ = std::move(laps);
+        permute(order, values_, record);
+        permute(order, rest_, rest);
+        permute(order, id_, 1);
+        permute(order, laps_, 1);
+    }
+
+    template <class V>
+    static void permute(const std::vector<Index>& order, V& values, std::size_t stride) {
+        V sorted(values.size());
+        for (std::size_t k = 0; k < order.size(); ++k)
+            for (std::size_t f = 0; f < stride; ++f)
+                sorted[k * stride + f] = values[order[k] * stride + f];
+        values = std::move(sorted);
     }
 
 private:
-    std::size_t size_, padded_;
-    AlignedVector<Real> values_;
+    std::size_t size_;
+    AlignedVector<Real> values_, rest_;
     std::vector<Index> id_;
     std::vector<std::int32_t> laps_;
 };

@@ -20,7 +20,6 @@ using P = Population;
 // List settings change speed only, never the forces beyond the order of their sums.
 constexpr std::size_t single_block = 4096; // [-] solids that one thread handles faster than two
 constexpr std::size_t block_size = 2048;   // [-]
-constexpr std::size_t chunk = 64;          // [-] solids moved at a time: 16 kB
 constexpr Real inner_steps = 8;            // [-] steps that an inner list should last
 constexpr Real least_inner_skin = 0.005;   // [-] over the mean radius
 constexpr Real outer_steps = 400;          // [-] steps that an outer list should last
@@ -71,9 +70,9 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
                 "Solids: radius must be > 0 m and finite");
         require(density[i] > 0 && std::isfinite(density[i]),
                 "Solids: density must be > 0 kg/m3 and finite");
-        solids_.at(P::RADIUS, i) = radius[i];
+        *solids_.at(P::RADIUS, i) = radius[i];
         const Real volume = 4. / 3 * std::numbers::pi * radius[i] * radius[i] * radius[i];
-        solids_.at(P::INVERSE_MASS, i) = 1 / (density[i] * volume);
+        *solids_.at(P::INVERSE_MASS, i) = 1 / (density[i] * volume);
         solids_.set(P::X, i, position[i]);
         solids_.set(P::VX, i, velocity[i]);
         solids_.set(P::SX, i, radius[i] * spin[i]);
@@ -90,20 +89,18 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
         require(-2 * curvature * max_radius_ < 1, "Solids: radius must be less than the bore's");
     }
 
-    const std::size_t size = n <= single_block ? solids_.padded() : block_size;
-    for (std::size_t begin = 0; begin < solids_.padded(); begin += size) {
+    const std::size_t size = n <= single_block ? n : block_size;
+    for (std::size_t begin = 0; begin < n; begin += size) {
         Block block;
         block.begin = begin;
-        block.end = std::min(begin + size, solids_.padded());
+        block.end = std::min(begin + size, n);
+        block.near_wall.resize(walls_.size());
         blocks_.push_back(std::move(block));
     }
-    at_wall_.assign(walls_.size(),
-                    {AlignedVector<Real>(solids_.padded() * WallHistory::field_count),
-                     std::vector<std::uint8_t>(solids_.padded() / lane_count)});
+    at_wall_.assign(walls_.size(), {AlignedVector<Real>(n * WallHistory::record)});
     [[maybe_unused]] const bool sorted = sort();
     // forces of the first half kick; no displacement is added
-    for (Block& block : blocks_) wall_forces(block, block.begin, block.end, 0);
-    pair_forces(0);
+    contact_forces(0);
 }
 
 void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
@@ -122,7 +119,7 @@ void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec
         const Vec3 u = drag_rate.empty() ? Vec3{} : liquid_velocity[id];
         solids_.set(P::AX, i, acceleration[id] + k * u);
         solids_.set(P::UX, i, u);
-        solids_.at(P::DRAG, i) = k;
+        *solids_.at(P::DRAG, i) = k;
         solids_.set(P::PX, i, {});
     }
 }
@@ -135,7 +132,7 @@ AdvanceReport Solids::advance(Real dt, std::size_t steps) {
         move(step == 0 ? dt / 2 : dt, dt); // the kick closes the step before, too
         update_lists(dt, report);
         if (!report.finite) return report;
-        pair_forces(dt);
+        contact_forces(dt);
     }
     if (steps > 0) kick_all(dt / 2);
     for (const Block& block : blocks_)
@@ -156,7 +153,6 @@ void Solids::kick_all(Real dt) {
     });
 }
 
-/// Kick, drift and wall contacts, a few tiles at a time while they are in the nearest cache.
 void Solids::move(Real kick_time, Real dt) {
     forcing_time_ += kick_time;
     const auto run =
@@ -165,18 +161,13 @@ void Solids::move(Real kick_time, Real dt) {
         Block& block = blocks_[b];
         block.wall_impulse += kick_time * block.wall_force;
         block.wall_force = {};
-        block.fastest2 = 0;
-        for (std::size_t first = block.begin; first < block.end; first += chunk) {
-            const std::size_t last = std::min(first + chunk, block.end);
-            const Real fastest2 = run(solids_, first, last, kick_time, dt, frame_velocity_);
-            block.fastest2 = std::max(block.fastest2, fastest2);
-            wall_forces(block, first, last, dt);
-        }
+        block.fastest2 = run(solids_, block.begin, block.end, kick_time, dt, frame_velocity_);
     });
 }
 
-void Solids::wall_forces(Block& block, std::size_t first, std::size_t last, Real dt) {
+void Solids::wall_forces(Block& block, Real dt) {
     for (std::size_t w = 0; w < walls_.size(); ++w) {
+        if (block.near_wall[w].empty()) continue;
         std::visit(
             [&](const auto& law, const auto& wall) {
                 const auto run = wall_model_.mode == Rolling::free
@@ -184,14 +175,16 @@ void Solids::wall_forces(Block& block, std::size_t first, std::size_t last, Real
                                                      std::decay_t<decltype(wall)>>
                                      : &wall_contact<Rolling::resisted, std::decay_t<decltype(law)>,
                                                      std::decay_t<decltype(wall)>>;
-                run(law, wall_model_.rolling, wall, solids_, block, first, last, at_wall_[w], dt);
+                run(law, wall_model_.rolling, wall, solids_, block, block.near_wall[w], at_wall_[w],
+                    dt);
             },
             wall_model_.law, walls_[w]);
     }
 }
 
-void Solids::pair_forces(Real dt) {
+void Solids::contact_forces(Real dt) {
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
+        wall_forces(blocks_[b], dt);
         std::visit(
             [&](const auto& law) {
                 const auto run =
@@ -214,14 +207,16 @@ void Solids::update_lists(Real dt, AdvanceReport& report) {
     fastest_ = std::sqrt(fastest2);
     frame_time_ += dt;
     approach_ += 2 * fastest_ * dt;
-    if (approach_ <= inner_skin_) return;
+    wall_approach_ += (fastest_ + wall_drift_) * dt;
+    if (approach_ <= inner_skin_ && wall_approach_ <= wall_skin_) return;
 
     ++report.prunes;
+    forget_parted();
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
         Block& block = blocks_[b];
         block.displacement2 = 0;
         const Vec3 shift = frame_time_ * frame_velocity_;
-        for (std::size_t i = block.begin; i < std::min(block.end, size()); ++i) {
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             const Vec3 moved = solids_.vector(P::X, i) - solids_.vector(P::X0, i) - shift;
             block.displacement2 = std::max(block.displacement2, dot(moved, moved));
         }
@@ -229,40 +224,40 @@ void Solids::update_lists(Real dt, AdvanceReport& report) {
     Real displacement2 = 0;
     for (const Block& block : blocks_) displacement2 = std::max(displacement2, block.displacement2);
     const Real left = outer_skin_ - 2 * std::sqrt(displacement2);
-    inner_skin_ = std::clamp(2 * fastest_ * dt * inner_steps, least_inner_skin * mean_radius_,
-                             outer_skin_ / 2);
-    approach_ = 0;
+    set_inner_skin(std::clamp(2 * fastest_ * dt * inner_steps, least_inner_skin * mean_radius_,
+                              outer_skin_ / 2));
     if (left >= inner_skin_) {
-        parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
-            Block& block = blocks_[b];
-            build_inner(block, [&](Index pair) { // `spare` is the list before
-                const std::int32_t slot = block.slot_of_outer[pair];
-                return slot < 0 ? History{} : block.spare.history(static_cast<std::size_t>(slot));
-            });
-        });
+        parallel_for_blocks(blocks_.size(), threads_,
+                            [&](std::size_t b) { build_inner(blocks_[b]); });
         link_blocks();
         return;
     }
     ++report.sorts;
     outer_skin_ = std::clamp(2 * fastest_ * dt * outer_steps, least_outer_skin * mean_radius_,
                              most_outer_skin * mean_radius_);
-    inner_skin_ = std::min(inner_skin_, outer_skin_ / 2);
+    set_inner_skin(std::min(inner_skin_, outer_skin_ / 2));
     report.finite = sort();
+}
+
+/// Start new inner lists. At present speeds both last equally long; a frame that moves towards a
+/// wall needs a wider skin there.
+void Solids::set_inner_skin(Real skin) {
+    inner_skin_ = skin;
+    const Real drift = wall_drift_ * skin / (2 * std::max(fastest_, 1e-3 * wall_drift_ + 1e-300));
+    wall_skin_ = skin / 2 + std::min(drift, mean_radius_);
+    approach_ = wall_approach_ = 0;
 }
 
 bool Solids::sort() {
     const std::size_t n = size();
-    if (outer_skin_ == 0) {
-        outer_skin_ = least_outer_skin * mean_radius_;
-        inner_skin_ = least_inner_skin * mean_radius_;
-    }
     if (!finite()) return false;
+    outer_skin_ = std::max(outer_skin_, least_outer_skin * mean_radius_);
 
     std::vector<std::int32_t> wraps(n);
     if (period_ > 0) {
         for (std::size_t i = 0; i < n; ++i) {
-            const Lap lap(solids_.at(P::X, i), period_);
-            solids_.at(P::X, i) = lap.x;
+            const Lap lap(*solids_.at(P::X, i), period_);
+            *solids_.at(P::X, i) = lap.x;
             wraps[i] = static_cast<std::int32_t>(lap.count);
             solids_.laps()[i] += wraps[i];
         }
@@ -284,7 +279,7 @@ bool Solids::sort() {
         const InnerPairs& inner = block.inner;
         for (std::size_t s = 0; s < inner.size; ++s) {
             const History history = inner.history(s);
-            if (inner.outer[s] == InnerPairs::padding || history == History{}) continue;
+            if (inner.is_padding(s) || history == History{}) continue;
             const std::size_t i = P::index(inner.first[s]), j = P::index(inner.second[s]);
             const std::int32_t image = block.outer.image[inner.outer[s]] + wraps[i] - wraps[j];
             if (place[i] < place[j])
@@ -300,89 +295,107 @@ bool Solids::sort() {
     for (const auto& [i, pair] : touching) carried[next[i]++] = pair;
 
     solids_.permute(order);
-    for (WallHistory& wall : at_wall_) {
-        AlignedVector<Real> sorted(wall.values.size());
-        for (std::size_t k = 0; k < n; ++k)
-            for (std::size_t f = 0; f < WallHistory::field_count; ++f)
-                sorted[WallHistory::place(k) + f * lanes] =
-                    wall.values[WallHistory::place(order[k]) + f * lanes];
-        wall.values = std::move(sorted);
-        std::fill(wall.active.begin(), wall.active.end(), std::uint8_t{1});
-    }
+    for (WallHistory& wall : at_wall_) P::permute(order, wall.values, WallHistory::record);
     Vec3 sum;
     for (std::size_t i = 0; i < n; ++i) {
         solids_.set(P::X0, i, solids_.vector(P::X, i));
         sum += solids_.vector(P::VX, i);
     }
     frame_velocity_ = (1 / static_cast<Real>(n)) * sum;
-    for (std::size_t i = n; i < solids_.padded(); ++i) { // padding keeps pace, never the fastest
-        solids_.set(P::X, i, {});
-        solids_.set(P::VX, i, frame_velocity_);
-    }
-    frame_time_ = approach_ = 0;
+    frame_time_ = 0;
+    wall_drift_ = 0;
+    for (const geometry::Wall& wall : walls_)
+        wall_drift_ = std::max(wall_drift_, closing_speed(wall, frame_velocity_));
+    set_inner_skin(std::max(inner_skin_, least_inner_skin * mean_radius_));
 
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
         Block& block = blocks_[b];
-        OuterPairs& outer = block.outer;
-        outer.row.assign(1, 0);
-        outer.second.clear();
-        outer.image.clear();
-        std::vector<History> found; // by outer pair
-        for (std::size_t i = block.begin; i < std::min(block.end, n); ++i) {
+        OuterPairs &outer = block.outer, cross;
+        outer.clear();
+        std::vector<History> found, found_cross; // by outer pair
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             grid_.around(grid_.cell(i), [&](Index begin, Index end, int image) {
                 const Vec3 x_i = position[order[i]] + Vec3{image * period_, 0, 0};
-                const Real reach_i = solids_.at(P::RADIUS, i) + outer_skin_;
+                const Real reach_i = *solids_.at(P::RADIUS, i) + outer_skin_;
                 for (std::size_t j = std::max<std::size_t>(begin, i + 1); j < end; ++j) {
                     const Vec3 d = x_i - position[order[j]];
-                    const Real range = reach_i + solids_.at(P::RADIUS, j);
+                    const Real range = reach_i + *solids_.at(P::RADIUS, j);
                     if (dot(d, d) >= range * range) continue;
-                    outer.second.push_back(static_cast<Index>(j));
-                    outer.image.push_back(static_cast<std::int8_t>(image));
-                    found.emplace_back();
+                    History history;
                     for (Index c = row[i]; c < row[i + 1]; ++c)
                         if (carried[c].partner == j && carried[c].image == image)
-                            found.back() = carried[c].history;
+                            history = carried[c].history;
+                    (j < block.end ? outer : cross).append(i, j, image);
+                    (j < block.end ? found : found_cross).push_back(history);
                 }
             });
-            outer.row.push_back(static_cast<Index>(outer.second.size()));
         }
-        build_inner(block, [&](Index pair) { return found[pair]; });
+        outer.cross_begin = found.size();
+        outer.append(cross);
+        found.insert(found.end(), found_cross.begin(), found_cross.end());
+        block.inner.clear(); // its numbers of outer pairs are void
+        build_inner(block);
+        for (std::size_t s = 0; s < block.inner.size; ++s)
+            if (!block.inner.is_padding(s)) block.inner.set_history(s, found[block.inner.outer[s]]);
     });
     link_blocks();
     return true;
 }
 
-/// Filter the outer pairs of a block into its inner list; `history_of` tells a pair's
-/// displacements.
-template <class HistoryOf>
-void Solids::build_inner(Block& block, const HistoryOf& history_of) {
+/// Filter the outer pairs of a block into its inner list; pairs that stay keep their displacements.
+void Solids::build_inner(Block& block) {
     const OuterPairs& outer = block.outer;
-    std::swap(block.inner, block.spare);
-    block.inner.clear();
-    std::vector<std::int32_t> slot_of(outer.second.size(), -1);
-    const auto take = [&](bool cross) {
-        for (std::size_t r = 0; r + 1 < outer.row.size(); ++r) {
-            const std::size_t i = block.begin + r;
-            const Vec3 x_i = solids_.vector(P::X, i);
-            const Real reach_i = solids_.at(P::RADIUS, i) + inner_skin_;
-            for (Index pair = outer.row[r]; pair < outer.row[r + 1]; ++pair) {
-                const Index j = outer.second[pair];
-                if ((j >= block.end) != cross) continue;
-                const Real shift = outer.image[pair] * period_;
-                const Vec3 d = x_i - solids_.vector(P::X, j) + Vec3{shift, 0, 0};
-                const Real range = reach_i + solids_.at(P::RADIUS, j);
-                if (dot(d, d) >= range * range) continue;
-                slot_of[pair] = static_cast<std::int32_t>(block.inner.size);
-                block.inner.append(solids_, i, j, shift, pair, history_of(pair));
-            }
+    InnerPairs &inner = block.inner, &before = block.spare;
+    std::swap(inner, before);
+    inner.clear();
+    std::size_t old = 0; // both lists ascend in the outer pair
+    const auto take = [&](std::size_t begin, std::size_t end) {
+        outer.find_near(solids_, period_, inner_skin_, begin, end, block.near);
+        inner.reserve(inner.size + block.near.size() + lane_count);
+        for (const Index pair : block.near) {
+            while (old < before.size && before.outer[old] < pair) ++old;
+            if (old < before.size && before.outer[old] == pair)
+                inner.append(before, old);
+            else
+                inner.append(solids_, outer.first[pair], outer.second[pair],
+                             outer.image[pair] * period_, pair);
         }
-        block.inner.pad(block.begin);
+        inner.pad(block.begin);
     };
-    take(false);
-    block.inner.cross_begin = block.inner.size;
-    if (blocks_.size() > 1) take(true);
-    block.cross.resize((block.inner.size - block.inner.cross_begin) * 6);
-    block.slot_of_outer = std::move(slot_of);
+    take(0, outer.cross_begin);
+    inner.cross_begin = inner.size;
+    take(outer.cross_begin, outer.first.size());
+    block.cross.resize((inner.size - inner.cross_begin) * 8);
+    for (std::size_t w = 0; w < walls_.size(); ++w) find_near_wall(block, w);
+}
+
+/// Solids that have left a wall forget it before the list that knows them is made anew.
+void Solids::forget_parted() {
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+        for (const Block& block : blocks_)
+            for (const Index i : block.near_wall[w])
+                std::visit(
+                    [&](const auto& wall) {
+                        if (!wall.touches(solids_.vector(P::X, i), *solids_.at(P::RADIUS, i)))
+                            at_wall_[w].clear(i);
+                    },
+                    walls_[w]);
+}
+
+/// List the solids of a block that may touch a wall before the next prune.
+void Solids::find_near_wall(Block& block, std::size_t w) {
+    std::visit(
+        [&](const auto& wall) {
+            const auto is_near = [&](std::size_t i) {
+                return wall.touches(solids_.vector(P::X, i),
+                                    *solids_.at(P::RADIUS, i) + wall_skin_);
+            };
+            std::vector<Index>& near = block.near_wall[w];
+            near.clear();
+            for (std::size_t i = block.begin; i < block.end; ++i)
+                if (is_near(i)) near.push_back(static_cast<Index>(i));
+        },
+        walls_[w]);
 }
 
 /// Tell every block which pairs of earlier blocks end in it.
@@ -392,7 +405,7 @@ void Solids::link_blocks() {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const InnerPairs& inner = blocks_[b].inner;
         for (std::size_t s = inner.cross_begin; s < inner.size; ++s) {
-            if (inner.outer[s] == InnerPairs::padding) continue;
+            if (inner.is_padding(s)) continue;
             blocks_[P::index(inner.second[s]) / block_size].incoming.push_back(
                 {static_cast<Index>(b), static_cast<Index>(s - inner.cross_begin)});
         }
@@ -401,15 +414,14 @@ void Solids::link_blocks() {
 
 bool Solids::finite() const noexcept {
     Real check = 0;
-    for (const auto field : {P::X, P::Y, P::Z, P::VX, P::VY, P::VZ, P::SX, P::SY, P::SZ}) {
+    for (const auto field : {P::X, P::VX, P::SX})
         for (std::size_t i = 0; i < size(); ++i) {
-            const Real value = solids_.at(field, i);
-            check += 0 * (value * value); // squares: distances and energies must be finite, too
+            const Vec3 v = solids_.vector(field, i);
+            check += 0 * dot(v, v); // squares: distances and energies must be finite, too
         }
-    }
     const Real most = period_ > 0 ? most_laps * period_ : std::numeric_limits<Real>::max();
     for (std::size_t i = 0; i < size(); ++i)
-        if (!(std::abs(solids_.at(P::X, i)) < most)) return false;
+        if (!(std::abs(*solids_.at(P::X, i)) < most)) return false;
     return check == 0; // 0 * NaN and 0 * infinity are NaN
 }
 
@@ -432,7 +444,7 @@ std::vector<std::int64_t> Solids::laps() const {
     return in_callers_order<std::int64_t>([&](std::size_t i) {
         if (period_ == 0) return std::int64_t{0};
         return solids_.laps()[i] +
-               static_cast<std::int64_t>(Lap(solids_.at(P::X, i), period_).count);
+               static_cast<std::int64_t>(Lap(*solids_.at(P::X, i), period_).count);
     });
 }
 
@@ -442,22 +454,22 @@ std::vector<Vec3> Solids::velocity() const {
 
 std::vector<Vec3> Solids::spin() const {
     return in_callers_order<Vec3>(
-        [&](std::size_t i) { return (1 / solids_.at(P::RADIUS, i)) * solids_.vector(P::SX, i); });
+        [&](std::size_t i) { return (1 / *solids_.at(P::RADIUS, i)) * solids_.vector(P::SX, i); });
 }
 
 std::vector<Real> Solids::radius() const {
-    return in_callers_order<Real>([&](std::size_t i) { return solids_.at(P::RADIUS, i); });
+    return in_callers_order<Real>([&](std::size_t i) { return *solids_.at(P::RADIUS, i); });
 }
 
 std::vector<Real> Solids::mass() const {
     return in_callers_order<Real>(
-        [&](std::size_t i) { return 1 / solids_.at(P::INVERSE_MASS, i); });
+        [&](std::size_t i) { return 1 / *solids_.at(P::INVERSE_MASS, i); });
 }
 
 /// The sum over kicks of m k (u - v) dt, as each implicit kick applied it.
 std::vector<Vec3> Solids::drag_impulse() const {
     return in_callers_order<Vec3>([&](std::size_t i) {
-        const Real rate = solids_.at(P::DRAG, i) / solids_.at(P::INVERSE_MASS, i);
+        const Real rate = *solids_.at(P::DRAG, i) / *solids_.at(P::INVERSE_MASS, i);
         return rate * (forcing_time_ * solids_.vector(P::UX, i) - solids_.vector(P::PX, i));
     });
 }
@@ -472,7 +484,7 @@ Real Solids::kinetic_energy() const {
     Real sum = 0;
     for (std::size_t i = 0; i < size(); ++i) {
         const Vec3 v = solids_.vector(P::VX, i), s = solids_.vector(P::SX, i);
-        sum += (dot(v, v) + 0.4 * dot(s, s)) / (2 * solids_.at(P::INVERSE_MASS, i));
+        sum += (dot(v, v) + 0.4 * dot(s, s)) / (2 * *solids_.at(P::INVERSE_MASS, i));
     }
     return sum;
 }
@@ -483,19 +495,19 @@ void Solids::for_each_contact(const Visit& visit) const {
     for (const Block& block : blocks_) {
         const InnerPairs& inner = block.inner;
         for (std::size_t s = 0; s < inner.size; ++s) {
-            if (inner.outer[s] == InnerPairs::padding) continue;
+            if (inner.is_padding(s)) continue;
             const std::size_t i = P::index(inner.first[s]), j = P::index(inner.second[s]);
-            const Vec3 d = solids_.vector(P::X, i) - solids_.vector(P::X, j) +
-                           Vec3{inner.at(InnerPairs::SHIFT, s), 0, 0};
-            const Real overlap = inner.at(InnerPairs::RADIUS_SUM, s) - norm(d);
+            const Vec3 d =
+                solids_.vector(P::X, i) - solids_.vector(P::X, j) + Vec3{inner.shift[s], 0, 0};
+            const Real overlap = inner.radius_sum[s] - norm(d);
             if (overlap <= 0) continue;
             const Vec3 normal = (1 / norm(d)) * d;
             const Vec3 velocity =
                 solids_.vector(P::VX, i) - solids_.vector(P::VX, j) -
                 cross(solids_.vector(P::SX, i) + solids_.vector(P::SX, j), normal);
             const Contact<Real> c{normal, velocity, overlap,
-                                  inner.at(InnerPairs::REDUCED_RADIUS, s),
-                                  inner.at(InnerPairs::REDUCED_MASS, s)};
+                                  inner.values[s * InnerPairs::record + InnerPairs::REDUCED_RADIUS],
+                                  inner.values[s * InnerPairs::record + InnerPairs::REDUCED_MASS]};
             visit(pair_model_, c, inner.history(s), std::int64_t{solids_.id()[i]},
                   std::int64_t{solids_.id()[j]});
         }
@@ -506,8 +518,8 @@ void Solids::for_each_contact(const Visit& visit) const {
                 for (std::size_t i = 0; i < size(); ++i) {
                     const Contact<Real> c =
                         wall_contact_of(wall, solids_.vector(P::X, i), solids_.vector(P::VX, i),
-                                        solids_.vector(P::SX, i), solids_.at(P::RADIUS, i),
-                                        solids_.at(P::INVERSE_MASS, i));
+                                        solids_.vector(P::SX, i), *solids_.at(P::RADIUS, i),
+                                        *solids_.at(P::INVERSE_MASS, i));
                     if (c.overlap > 0)
                         visit(wall_model_, c, at_wall_[w].at(i), std::int64_t{solids_.id()[i]},
                               -1 - static_cast<std::int64_t>(w));
@@ -614,28 +626,30 @@ void Solids::exchange(Archive& archive) {
     for (const std::size_t count : {size(), blocks_.size(), walls_.size(), lane_count})
         archive.same(static_cast<std::int64_t>(count));
     archive.same(period_);
-    for (std::size_t k = 0; k < solids_.padded() * P::field_count; ++k)
-        archive(solids_.values()[k]);
+    solids_.for_each_array(vector);
     for (Index& id : solids_.id()) archive(id);
     for (std::int32_t& laps : solids_.laps()) archive(laps);
-    for (WallHistory& wall : at_wall_) {
-        vector(wall.values);
-        for (std::uint8_t& active : wall.active) archive(active);
-    }
+    for (WallHistory& wall : at_wall_) vector(wall.values);
     vec(frame_velocity_);
-    for (Real* v : {&frame_time_, &approach_, &outer_skin_, &inner_skin_, &fastest_}) archive(*v);
+    for (Real* v : {&frame_time_, &approach_, &wall_approach_, &wall_drift_, &outer_skin_,
+                    &inner_skin_, &wall_skin_, &fastest_})
+        archive(*v);
     for (Block& block : blocks_) {
-        vector(block.outer.row);
+        vector(block.outer.first);
         vector(block.outer.second);
         vector(block.outer.image);
-        vector(block.slot_of_outer);
+        archive(block.outer.cross_begin);
         vector(block.inner.first);
         vector(block.inner.second);
         vector(block.inner.outer);
+        vector(block.inner.shift);
+        vector(block.inner.radius_sum);
         vector(block.inner.values);
+        vector(block.inner.touched);
+        for (auto& near : block.near_wall) vector(near);
         archive(block.inner.cross_begin);
         block.inner.size = block.inner.first.size();
-        block.cross.resize((block.inner.size - block.inner.cross_begin) * 6);
+        block.cross.resize((block.inner.size - block.inner.cross_begin) * 8);
         vec(block.wall_force);
         vec(block.wall_impulse);
     }

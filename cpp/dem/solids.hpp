@@ -44,8 +44,8 @@ struct ContactTable {
 ///
 /// Two lists: the outer one (cell grid, skin of a fraction of a radius) is filtered into an inner
 /// one of pairs that nearly touch. An inner list is valid while twice the summed largest speed,
-/// relative to the mean velocity at the last sort, is below its skin; this bound is exact, nothing
-/// is missed.
+/// relative to the mean velocity at the last sort, is below its skin, and solids near a wall are
+/// listed by the like bound; these bounds are exact, nothing is missed.
 class Solids {
 public:
     Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
@@ -86,12 +86,14 @@ public:
 private:
     void kick_all(Real dt);
     void move(Real kick_time, Real dt);
-    void wall_forces(Block& block, std::size_t first, std::size_t last, Real dt);
-    void pair_forces(Real dt);
+    void wall_forces(Block& block, Real dt);
+    void contact_forces(Real dt);
     void update_lists(Real dt, AdvanceReport& report);
     [[nodiscard]] bool sort();
-    template <class HistoryOf>
-    void build_inner(Block& block, const HistoryOf& history_of);
+    void build_inner(Block& block);
+    void forget_parted();
+    void find_near_wall(Block& block, std::size_t w);
+    void set_inner_skin(Real skin);
     void link_blocks();
     [[nodiscard]] bool finite() const noexcept;
     template <class Archive>
@@ -113,10 +115,13 @@ private:
     Real forcing_time_ = 0; // [s] summed kicks since set_forcing
 
     neighbors::CellGrid grid_{1, 0};
-    Vec3 frame_velocity_; // [m/s] mean at the last sort
-    Real frame_time_ = 0; // [s] since the last sort
-    Real approach_ = 0;   // [m] by which pairs may have closed since the last prune
+    Vec3 frame_velocity_;    // [m/s] mean at the last sort
+    Real frame_time_ = 0;    // [s] since the last sort
+    Real approach_ = 0;      // [m] by which pairs may have closed since the last prune
+    Real wall_approach_ = 0; // [m] the same of a solid and a wall
+    Real wall_drift_ = 0;    // [m/s] of the frame towards walls
     Real outer_skin_ = 0, inner_skin_ = 0; // [m]
+    Real wall_skin_ = 0;                   // [m] gap below which a wall lists a solid
     Real fastest_ = 0;                     // [m/s] largest speed relative to the frame, last step
 };
 

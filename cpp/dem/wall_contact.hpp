@@ -4,25 +4,33 @@
 #include "dem/pair_contact.hpp"
 #include "dem/rolling_resistance.hpp"
 #include "geometry/surface.hpp"
+#include "geometry/wall.hpp"
 
 namespace mpsdem::dem {
 
-/// Displacements of every solid against one wall; zero where they do not touch. Tiles as in the
-/// population: spring x, y, z [m], roll x, y, z [rad].
+/// Displacements of every solid against one wall, zero where they do not touch: rows of spring [m]
+/// and roll [rad], each followed by a zero.
 struct WallHistory {
-    static constexpr std::size_t field_count = 6;
+    static constexpr std::size_t record = 8;
 
-    AlignedVector<Real> values;       // (solids * 6,) in tiles
-    std::vector<std::uint8_t> active; // (registers,) whether any of its solids touched
+    AlignedVector<Real> values; // (solids * record,)
 
-    [[nodiscard]] static constexpr std::size_t place(std::size_t i) noexcept {
-        return i / lanes * lanes * field_count + i % lanes;
-    }
     [[nodiscard]] History at(std::size_t i) const noexcept {
-        const Real* v = values.data() + place(i);
-        return {{v[0], v[lanes], v[2 * lanes]}, {v[3 * lanes], v[4 * lanes], v[5 * lanes]}};
+        const Real* v = values.data() + i * record;
+        return {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}};
+    }
+    void clear(std::size_t i) noexcept {
+        store(values.data() + i * record, Lanes{});
+        store(values.data() + i * record + 4, Lanes{});
     }
 };
+
+/// Fastest way [m/s] in which a body of `velocity` can near a wall.
+[[nodiscard]] inline Real closing_speed(const geometry::Wall& wall, Vec3 velocity) noexcept {
+    if (const auto* plane = std::get_if<geometry::Plane>(&wall))
+        return std::abs(dot(velocity, plane->at(Vec3{}).normal));
+    return norm({0, velocity.y, velocity.z}); // along the pipe its wall stays as far
+}
 
 /// Contact of solids with a wall, one or a register of them.
 template <class T, geometry::Surface S>
@@ -31,63 +39,71 @@ template <class T, geometry::Surface S>
                                          T radius, T inverse_mass) noexcept {
     const geometry::WallPoint<T> at = wall.at(position);
     return {at.normal, velocity - wall.velocity(position) - cross(surface_speed, at.normal),
-            radius - at.distance, 1 / (1 / radius + wall.curvature()), 1 / inverse_mass};
+            radius - at.distance, radius / (1 + wall.curvature() * radius), 1 / inverse_mass};
 }
 
-/// Contact forces of one wall on the solids [first, last), whole tiles of one block, a register of
-/// solids at a time; where none touches they are skipped, else those that do not touch are masked.
+/// Contact forces of one wall on those of the solids `near` it that touch it, a register at a time.
 template <Rolling mode, ContactLaw Law, geometry::Surface S>
 [[gnu::flatten]] void wall_contact(const Law& law, const RollingResistance& rolling, const S& wall,
-                                   Population& p, Block& block, std::size_t first, std::size_t last,
+                                   Population& p, Block& block, std::span<const Index> near,
                                    WallHistory& at_wall, Real dt) noexcept {
     using P = Population;
-    const auto load3 = [](const Real* from) {
-        return Vector<Lanes>{load(from), load(from + lanes), load(from + 2 * lanes)};
+    const auto rows = [](Real* const* from, std::size_t f) {
+        return turned(load(from[0] + f), load(from[1] + f), load(from[2] + f), load(from[3] + f));
     };
-    const auto store3 = [](Real* to, const Vector<Lanes>& v) {
-        store(to, v.x);
-        store(to + lanes, v.y);
-        store(to + 2 * lanes, v.z);
-    };
-    Lanes most{};
-    Vector<Lanes> total{};
-    for (std::size_t begin = first; begin < last; begin += lane_count) {
-        Real* const solid = p.values() + P::place(begin);
-        const Vector<Lanes> position = load3(solid + P::X * lanes);
-        Lanes radius = load(solid + P::RADIUS * lanes);
-        const LaneMask touching = wall.touches(position, radius);
-        std::uint8_t& active = at_wall.active[begin / lane_count];
-        const bool contact = any(touching);
-        if (!contact && !active) continue;
-        active = contact;
-
-        Real* const history = at_wall.values.data() + WallHistory::place(begin);
-        // a padding lane has no radius and no mass; any finite numbers serve
-        Lanes inverse_mass = load(solid + P::INVERSE_MASS * lanes);
-        radius = select(inverse_mass > 0, radius, Lanes{} + 1);
-        inverse_mass = select(inverse_mass > 0, inverse_mass, Lanes{} + 1);
-        const Vector<Lanes> surface_speed = load3(solid + P::SX * lanes);
-        Contact<Lanes> c = wall_contact_of(wall, position, load3(solid + P::VX * lanes),
-                                           surface_speed, radius, inverse_mass);
-        most = max(most, select(touching, c.overlap / radius, Lanes{}));
-        c.overlap = max(c.overlap, least_overlap * radius);
-        Vector<Lanes> spring = load3(history);
-        const ContactForce<Lanes> force = law.force(c, spring, dt);
-        store3(history, masked(touching, spring));
-        const Vector<Lanes> on_solid = masked(touching, force.normal * c.normal + force.tangential);
-        Vector<Lanes> torque = -cross(c.normal, force.tangential);
-        if constexpr (mode == Rolling::resisted) {
-            Vector<Lanes> roll = load3(history + 3 * lanes);
-            const Lanes inverse = 1 / radius;
-            torque += inverse * rolling.torque(c, force, inverse * surface_speed, roll, dt);
-            store3(history + 3 * lanes, masked(touching, roll));
+    Lanes most{}, total{};
+    Touching found;
+    for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
+        end = std::min(begin + batch, near.size());
+        found.clear();
+        for (std::size_t n = begin; n < end; n += lane_count) {
+            const std::size_t count = std::min(lane_count, end - n);
+            Real* solid[lane_count];
+            for (std::size_t k = 0; k < lane_count; ++k)
+                solid[k] = p.at(P::X, near[n + std::min(k, count - 1)]);
+            const auto [position, radius] = rows(solid, P::X);
+            const unsigned touching = bits(wall.touches(position, radius)) & ((1u << count) - 1);
+            for (std::size_t k = 0; k < count; ++k)
+                if ((touching >> k & 1u) == 0) at_wall.clear(near[n + k]);
+            found.add(n, touching);
         }
-        store3(solid + P::FX * lanes, load3(solid + P::FX * lanes) + on_solid);
-        store3(solid + P::TX * lanes, load3(solid + P::TX * lanes) + masked(touching, torque));
-        total += on_solid;
+        found.fill_up();
+        for (std::size_t h = 0; h < found.size(); h += lane_count) {
+            Real *solid[lane_count], *history[lane_count];
+            for (std::size_t k = 0; k < lane_count; ++k) {
+                const Index i = near[found.data()[h + k]];
+                solid[k] = p.at(P::X, i);
+                history[k] = at_wall.values.data() + i * WallHistory::record;
+            }
+            const auto [position, radius] = rows(solid, P::X);
+            const auto [surface_speed, inverse_mass] = rows(solid, P::SX);
+            Contact<Lanes> c = wall_contact_of(wall, position, rows(solid, P::VX).v, surface_speed,
+                                               radius, inverse_mass);
+            most = max(most, c.overlap / radius);
+            c.overlap = max(c.overlap, least_overlap * radius);
+            Vector<Lanes> spring = rows(history, 0).v;
+            const ContactForce<Lanes> force = law.force(c, spring, dt);
+            Vector<Lanes> torque = -cross(c.normal, force.tangential);
+            Rows new_roll;
+            if constexpr (mode == Rolling::resisted) {
+                Vector<Lanes> roll = rows(history, 4).v;
+                const Lanes inverse = 1 / radius;
+                torque += inverse * rolling.torque(c, force, inverse * surface_speed, roll, dt);
+                new_roll = turned(roll);
+            }
+            const Rows on_solid = turned(force.normal * c.normal + force.tangential);
+            const Rows twist = turned(torque), new_spring = turned(spring);
+            for (std::size_t k = 0; k < std::min(lane_count, found.size() - h); ++k) {
+                store(history[k], new_spring.row[k]);
+                if constexpr (mode == Rolling::resisted) store(history[k] + 4, new_roll.row[k]);
+                store(solid[k] + P::FX, load(solid[k] + P::FX) + on_solid.row[k]);
+                store(solid[k] + P::TX, load(solid[k] + P::TX) + twist.row[k]);
+                total += on_solid.row[k];
+            }
+        }
     }
     block.largest_overlap = std::max(block.largest_overlap, largest(most));
-    block.wall_force += Vec3{sum(total.x), sum(total.y), sum(total.z)};
+    block.wall_force += Vec3{total[0], total[1], total[2]};
 }
 
 } // namespace mpsdem::dem
