@@ -8,23 +8,11 @@
 /// Keep some of a register's worth of indices, and write them next to each other.
 namespace mpsdem {
 
-/// Bit k is set where lane k of the condition holds.
-[[nodiscard]] [[gnu::always_inline]] inline unsigned bits(LaneMask condition) noexcept {
-#if defined(__AVX512F__)
-    return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(condition),
-                                  reinterpret_cast<__m512i>(condition));
-#elif defined(__AVX__)
-    return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(condition)));
-#else
-    return (condition[0] != 0 ? 1U : 0U) | (condition[1] != 0 ? 2U : 0U);
-#endif
-}
-
-#if defined(__AVX__) && !defined(__AVX512F__)
-namespace detail {
+#if defined(__AVX__)
+static_assert(lane_count == 4 && sizeof(Index) == 4);
 
 /// For each set of 4 lanes the bytes that bring its members to the front.
-inline constexpr auto to_front = [] {
+inline constexpr auto bytes_to_front = [] {
     std::array<std::array<std::uint8_t, 16>, 16> bytes{};
     for (std::size_t set = 0; set < 16; ++set) {
         std::size_t next = 0;
@@ -36,22 +24,16 @@ inline constexpr auto to_front = [] {
     }
     return bytes;
 }();
-
-} // namespace detail
 #endif
 
 /// Write those of from[0 .. lane_count) whose bit in `kept` is set to out[0 ...], rubbish behind
 /// them up to lane_count; return how many.
 [[gnu::always_inline]] inline std::size_t pack(const Index* from, unsigned kept,
                                                Index* out) noexcept {
-#if defined(__AVX512F__) && defined(__AVX512VL__)
-    const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(kept), all));
-#elif defined(__AVX__) && !defined(__AVX512F__)
+#if defined(__AVX__)
     const __m128i all = _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
     const __m128i move =
-        _mm_loadu_si128(reinterpret_cast<const __m128i*>(detail::to_front[kept].data()));
+        _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes_to_front[kept].data()));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_shuffle_epi8(all, move));
 #else
     std::size_t next = 0;
