@@ -20,6 +20,8 @@ struct Elasticity {
 ///
 /// Source: Di Renzo & Di Maio (2004) doi:10.1016/j.ces.2003.09.037, eqs. 4-14. Deviation: contacts
 /// do not pull, and the damping is calibrated for that, so that `restitution` is what comes back.
+/// Known error: a stuck tangential spring stiffens under growing overlap, which is no one's work.
+/// Undamped (e = 1), an oblique impact gains up to 0.2 % energy at friction 0.5; none at e <= 0.95.
 class HertzMindlin {
 public:
     HertzMindlin(const Elasticity& first, const Elasticity& second, Real restitution, Real friction)

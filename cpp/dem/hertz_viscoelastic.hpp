@@ -25,6 +25,9 @@ public:
         require(tangential_damping >= 0,
                 "HertzViscoelastic: tangential_damping must be >= 0 1/(m s)");
         require(friction >= 0, "HertzViscoelastic: friction must be >= 0");
+        require(std::isfinite(normal_stiffness + tangential_stiffness + normal_damping +
+                              tangential_damping),
+                "HertzViscoelastic: stiffness and damping must be finite");
     }
 
     template <class T>

@@ -24,6 +24,9 @@ public:
         require(normal_damping >= 0, "LinearSpring: normal_damping must be >= 0 kg/s");
         require(tangential_damping >= 0, "LinearSpring: tangential_damping must be >= 0 kg/s");
         require(friction >= 0, "LinearSpring: friction must be >= 0");
+        require(std::isfinite(normal_stiffness + tangential_stiffness + normal_damping +
+                              tangential_damping),
+                "LinearSpring: stiffness and damping must be finite");
     }
 
     [[nodiscard]] static LinearSpring with_restitution(Real normal_stiffness,

@@ -38,7 +38,8 @@ struct Lap {
             x = 0;
             ++count;
         }
-        count = std::clamp(count, -most_laps, most_laps); // a lost solid: finite() tells
+        // a lost solid may be anywhere: finite() tells
+        count = std::isnan(count) ? 0 : std::clamp(count, -most_laps, most_laps);
     }
 };
 

@@ -206,3 +206,10 @@ GOOD = {
 def test_a_bad_parameter_is_refused_by_its_name(law, name, value):
     with pytest.raises(ValueError, match=name.removeprefix("other_")):
         law(**(GOOD[law] | {name: value}))
+
+
+@pytest.mark.parametrize("law", [dem.LinearSpring, dem.HertzViscoelastic])
+@pytest.mark.parametrize("name", SPRING | DAMPER)
+def test_infinite_stiffness_and_damping_are_refused(law, name):
+    with pytest.raises(ValueError, match="stiffness and damping must be finite"):
+        law(**(GOOD[law] | {name: np.inf}))
