@@ -4,10 +4,10 @@ Compiled kernels of mpsdem. SI units throughout.
 from __future__ import annotations
 from . import geometry
 from . import neighbors
+from . import linear
 from . import dem
 from . import mps
 from . import coupling
-from . import linear
 __all__: list[str] = ['available_threads', 'cholmod', 'compiler', 'coupling', 'dem', 'geometry', 'linear', 'mps', 'neighbors', 'simd', 'version']
 def available_threads() -> int:
     """
