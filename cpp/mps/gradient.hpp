@@ -71,8 +71,8 @@ inline void corrected_gradient(const ReferenceDensity& reference,
 ///   (p_j - p_i) r_ij + 2 p_b (r_ij . n) n
 ///
 /// The background p_b [Pa] spreads the particles evenly; along the wall it would drag. 0.02 rho U^2
-/// holds the density's scatter below 0.02 at the price of 2 % in friction; p_b must stay below
-/// 0.2 rho (dx/dt)^2. `wall` gives n at the particle itself.
+/// holds the scatter of the density near 0.02 at the price of 3 % in friction; p_b must stay below
+/// 0.2 rho (dx/dt)^2. n is the wall's at particle i.
 template <geometry::Surface Wall>
 void background_gradient(Real background, const Wall& wall, const ReferenceDensity& reference,
                          const neighbors::NeighborList& neighbors, std::span<const Kind> kind,

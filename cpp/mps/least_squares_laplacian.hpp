@@ -32,7 +32,7 @@ void least_squares_laplacian(const Wall& wall, const neighbors::NeighborList& ne
                              std::span<T> result, std::span<std::uint8_t> deficient) {
     using Basis = Eigen::Matrix<Real, 9, 1>;
     using Normal = Eigen::Matrix<Real, 9, 9>;
-    constexpr Real smallest_pivot = 1e-9; // [-] over the largest; 1e-3 is usual in a full pipe
+    constexpr Real smallest_pivot = 1e-5; // [-] over the largest; in a full pipe 4e-3 and more
     const Real scale = 1 / neighbors.radius();
 
     const auto each_node = [&](std::size_t i, const auto& visit) {

@@ -22,7 +22,7 @@ concept LengthModel = requires(const M& model, Vec3 x) {
 ///
 /// 0.4 of the distance from the wall next to it, 0.14 R on the axis. A model of the mean flow.
 /// Source: Nikuradse (1932), VDI-Forschungsheft 356; in Schlichting, Boundary-Layer Theory, ch. 20.
-/// For Reynolds numbers from 1e5; below, lengths of nature are up to a tenth larger.
+/// For Reynolds numbers from 1e5.
 class MixingLength {
 public:
     explicit MixingLength(Real pipe_radius) : pipe_radius_(pipe_radius) {
