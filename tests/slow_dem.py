@@ -55,7 +55,8 @@ class Bore:
 
     def at(self, point):
         distance = np.hypot(point[1], point[2])
-        return self.radius - distance, np.array([0.0, -point[1], -point[2]]) / distance
+        inward = np.array([0.0, -point[1], -point[2]])
+        return self.radius - distance, inward / distance if distance > 0 else 0 * inward
 
     def core(self):
         return geometry.Cylinder(radius=self.radius, velocity=np.array(self.velocity))

@@ -28,8 +28,9 @@ public:
     /// Whether a sphere reaches the wall.
     template <class T>
     [[nodiscard]] auto touches(const Vector<T>& centre, T radius) const noexcept {
-        const T free = radius_ - radius; // no square root: this is asked of every solid, every step
-        return centre.y * centre.y + centre.z * centre.z > free * free;
+        const T free = radius_ - radius; // below zero it touches anywhere
+        // no square root: this is asked of every solid near the wall, every step
+        return centre.y * centre.y + centre.z * centre.z > free * abs(free);
     }
 
 private:

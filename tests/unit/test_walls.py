@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mpsdem._core import dem, geometry
-from slow_dem import HERTZ, LINEAR, STEP, Bore, Flat, scene
+from slow_dem import HERTZ, LINEAR, STEP, Bore, Flat, SlowSolids, scene
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
 RADIUS = 0.01
@@ -150,6 +150,21 @@ def test_a_solid_flung_through_a_plane_is_pushed_back():
     solids.advance(1e-5, 5000)
     assert solids.velocity[0, 2] > 0
     assert solids.position[0, 2] > RADIUS
+
+
+@pytest.mark.parametrize("bore", [1.001, 1.03, 1.2, 1.5])
+def test_a_solid_that_nearly_fills_a_bore_meets_it_on_all_sides(bore):
+    start = scene(
+        [[0, 0, 0.0], [0.05, 0, 1e-6]],
+        [[0.3, 0.5, 0.4], [0.3, -0.5, 0]],
+        walls=[Bore(radius=bore * RADIUS)],
+        period=0.1,
+    )
+    slow, solids = SlowSolids(start), start.solids()
+    slow.advance(STEP, 200)
+    solids.advance(STEP, 200)
+    assert np.linalg.norm(slow.wall_impulse) > 0
+    np.testing.assert_allclose(solids.velocity, slow.v, atol=1e-12)
 
 
 @pytest.mark.parametrize(
