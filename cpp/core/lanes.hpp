@@ -42,12 +42,14 @@ struct Columns {
 
 [[nodiscard]] [[gnu::always_inline]] inline Columns turned(Lanes a, Lanes b, Lanes c,
                                                            Lanes d) noexcept {
-    constexpr LaneMask even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
-    const Lanes ab = __builtin_shuffle(a, b, even), cd = __builtin_shuffle(c, d, even);
-    const Lanes ab_odd = __builtin_shuffle(a, b, odd), cd_odd = __builtin_shuffle(c, d, odd);
-    return {{__builtin_shuffle(ab, cd, low), __builtin_shuffle(ab_odd, cd_odd, low),
-             __builtin_shuffle(ab, cd, high)},
-            __builtin_shuffle(ab_odd, cd_odd, high)};
+    const Lanes ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    const Lanes cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const Lanes ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const Lanes cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    return {{__builtin_shufflevector(ab, cd, 0, 1, 4, 5),
+             __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5),
+             __builtin_shufflevector(ab, cd, 2, 3, 6, 7)},
+            __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7)};
 }
 
 /// The way back: row k belongs to solid or pair k, with `w` behind its vector.
