@@ -240,7 +240,11 @@ def _show_plan(plan: Plan) -> None:
 
     _heading("Steps")
     table = _table("step", "s", "limit")
-    for name, step in (("solids", plan.solid_step), ("coupling", plan.coupling_step)):
+    for name, step in (
+        ("solids", plan.solid_step),
+        ("coupling", plan.coupling_step),
+        ("liquid", plan.liquid_step),
+    ):
         if step is None:
             continue
         table.add_row(name, f"{step.value:.4g}", "")

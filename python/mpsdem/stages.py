@@ -7,27 +7,27 @@ stands in the `State` that it is called with.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mpsdem._core import coupling, dem, geometry, mps
-from mpsdem.case import Case, Liquid, Material, Solids
+from mpsdem import case as scene
+from mpsdem._core import coupling, dem, geometry
+from mpsdem.case import Case, Material, Solids
 from mpsdem.contacts import Impact
 from mpsdem.geometry import place_solids
+from mpsdem.liquids import Liquid, build_liquid
 from mpsdem.plan import (
     DRAG_LAWS,
     DragLaw,
     Plan,
-    clear_gradient,
     gravity,
     impacts,
     materials,
     mean_diameter,
-    pipe_profile,
     spring_stiffness,
 )
 from mpsdem.results import ResultsWriter
@@ -37,14 +37,16 @@ ContactLaw = dem.LinearSpring | dem.HertzMindlin | dem.HertzViscoelastic
 
 
 class SimulationDiverged(RuntimeError):  # noqa: N818 - what happened, not what is wrong
-    """A number of the run is no longer finite, or a solid has left the bore."""
+    """The run has no sound state any more; `solid` is None where it was the liquid."""
 
-    def __init__(self, *, step: int, time: float, field: str, solid: int) -> None:
+    def __init__(
+        self, *, step: int, time: float, field: str, solid: int | None, remedy: str
+    ) -> None:
         self.step, self.time, self.field, self.solid = step, time, field, solid
+        whose = "the liquid" if solid is None else f"solid {solid}"
         super().__init__(
-            f"diverged at t = {time:.6g} s (step {step}): the {field} of solid {solid} is out of "
-            "bounds. Remedy: a smaller fidelity.rayleigh_fraction or fidelity.coupling_step; "
-            "then a larger fidelity.stiffness_factor"
+            f"diverged at t = {time:.6g} s (step {step}): the {field} of {whose} is out of bounds. "
+            f"Remedy: {remedy}"
         )
 
 
@@ -56,6 +58,8 @@ class State:
     ----------
     population : dem.Solids or None
         Positions, velocities, spins and contacts; None in clear liquid.
+    liquid : Liquid or None
+        What carries them; None in a dry scene.
     step : int
         Coupling steps since the start, the one under way included.
     time : float
@@ -79,6 +83,7 @@ class State:
     """
 
     population: dem.Solids | None = None
+    liquid: Liquid | None = None
     step: int = 0
     time: float = 0.0
     liquid_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
@@ -107,14 +112,36 @@ class Stage(Protocol):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AdvanceLiquid:
+    """Move the liquid: viscosity, pressure, and the particles themselves."""
+
+    name: ClassVar[str] = "AdvanceLiquid"
+    turns: int  # coupling steps to a step of the liquid, which is taken at the last of them
+
+    def __call__(self, state: State, dt: float) -> None:
+        assert state.liquid is not None
+        if state.step % self.turns:
+            return
+        state.liquid.advance(self.turns * dt)
+        if not state.liquid.sound:
+            raise SimulationDiverged(
+                step=state.step,
+                time=state.time,
+                field="pressure or velocity",
+                solid=None,
+                remedy="a smaller fidelity.courant; then another fidelity.particle_spacing",
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SampleLiquid:
-    """Read the prescribed profile at the solids."""
+    """Read the velocity of the liquid at the solids."""
 
     name: ClassVar[str] = "SampleLiquid"
-    profile: mps.PipeProfile
 
     def __call__(self, state: State, _dt: float) -> None:
-        state.liquid_velocity = self.profile.velocity(state.solids.position)
+        assert state.liquid is not None
+        state.liquid_velocity = state.liquid.velocity_at(state.solids.position)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,24 +220,24 @@ class Record:
     steps_per_frame: int
     pipe_radius: float
     pipe_length: float
-    bulk_velocity: float | None  # [m/s] None without liquid
-    clear_gradient: float  # [Pa/m] loss of the liquid alone
 
     def __call__(self, state: State, _dt: float) -> None:
         if state.step % self.steps_per_frame:
             return
-        solids: dict[str, ArrayLike] = {}
+        solids: Mapping[str, ArrayLike] = {}
+        liquid: Mapping[str, ArrayLike] = {}
         diagnostics: dict[str, ArrayLike] = {}
         drag: FloatArray = np.zeros(3)
         if state.population is not None:
             check(state, self.pipe_radius)
             solids, numbers, drag = self._solids(state)
             diagnostics |= numbers
-        if self.bulk_velocity is not None:
+        if state.liquid is not None:
             bore = math.pi * self.pipe_radius**2 * self.pipe_length
-            diagnostics["bulk_velocity"] = self.bulk_velocity
-            diagnostics["pressure_gradient"] = self.clear_gradient + drag[0] / bore
-        self.writer.append(state.time, solids=solids, diagnostics=diagnostics)
+            liquid, of_liquid = state.liquid.frame()
+            gradient = np.add(of_liquid["pressure_gradient"], drag[0] / bore)
+            diagnostics |= {**of_liquid, "pressure_gradient": gradient}
+        self.writer.append(state.time, solids=solids, liquid=liquid, diagnostics=diagnostics)
         state.frame_time = state.time
         state.largest_overlap = 0.0
 
@@ -227,7 +254,7 @@ class Record:
             "laps": solids.laps,
         }
         drag: FloatArray = np.zeros(3)
-        if self.bulk_velocity is not None:
+        if state.liquid is not None:
             slip = state.liquid_velocity - velocity
             force = (mass * state.drag_rate)[:, None] * slip
             fields["void_fraction"] = state.void_fraction
@@ -273,13 +300,21 @@ def check(state: State, pipe_radius: float) -> None:
     for name, good in sound.items():
         if not good.all():
             solid = int(np.argmin(good))
-            raise SimulationDiverged(step=state.step, time=state.time, field=name, solid=solid)
+            raise SimulationDiverged(
+                step=state.step,
+                time=state.time,
+                field=name,
+                solid=solid,
+                remedy="a smaller fidelity.rayleigh_fraction or fidelity.coupling_step; then a "
+                "larger fidelity.stiffness_factor",
+            )
 
 
 def build_state(case: Case, plan: Plan) -> State:
     """The state at time 0: solids at their places, at rest or with their first velocity."""
+    liquid = build_liquid(case, plan)
     if case.solids is None:
-        return State()
+        return State(liquid=liquid)
     solids, speed = case.solids, plan.impact_speed
     placement = place_solids(case)
     count = len(placement.radius)
@@ -299,7 +334,7 @@ def build_state(case: Case, plan: Plan) -> State:
         threads=plan.threads,
     )
     # Where no stage looks for neighbors, a solid is taken to be alone.
-    return State(population=population, void_fraction=np.ones(count))
+    return State(population=population, liquid=liquid, void_fraction=np.ones(count))
 
 
 def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stage]:
@@ -307,8 +342,10 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
     pipe = case.pipe
     for planned in plan.stages:
         match planned.name, case.solids, case.liquid:
-            case "SampleLiquid", _, Liquid():
-                yield SampleLiquid(profile=pipe_profile(case))
+            case "AdvanceLiquid", _, _:
+                yield AdvanceLiquid(turns=plan.turns_per_liquid_step)
+            case "SampleLiquid", _, _:
+                yield SampleLiquid()
             case "FindVoidFraction", _, _:
                 average = coupling.VoidFraction(
                     pipe_radius=pipe.radius,
@@ -316,7 +353,7 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     smoothing_radius=plan.smoothing_radius,
                 )
                 yield FindVoidFraction(average=average, threads=plan.threads)
-            case "DragForce", Solids() as solids, Liquid() as liquid:
+            case "DragForce", Solids() as solids, scene.Liquid() as liquid:
                 yield DragForce(
                     law=DRAG_LAWS[solids.drag](),
                     solid_density=np.full(case.solids_count, solids.density),
@@ -331,14 +368,12 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     dry=liquid is None,
                     pipe_radius=pipe.radius,
                 )
-            case "Record", _, liquid:
+            case "Record", _, _:
                 yield Record(
                     writer=writer,
                     steps_per_frame=plan.clock.steps_per_frame,
                     pipe_radius=pipe.radius,
                     pipe_length=pipe.length,
-                    bulk_velocity=liquid.bulk_velocity if liquid else None,
-                    clear_gradient=clear_gradient(case),
                 )
 
 

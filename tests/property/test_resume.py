@@ -48,6 +48,8 @@ CASES = {
     "profile, rolling friction": case(liquid=WATER, solids=ROLLING),
     "profile, Schiller-Naumann": case(liquid=WATER, solids={"drag": "schiller_naumann"}),
     "clear liquid": case(liquid=WATER).with_(solids=None),
+    "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),
+    "clear liquid, lagrangian": case(liquid=WATER | {"model": "lagrangian"}).with_(solids=None),
 }
 
 

@@ -93,8 +93,9 @@ def problems(case, *settings, **changes):
             "solids.arrangement.kind = 'blok': must be one of 'block', 'random', 'list'",
         ),
         (
-            "liquid.model=lagrangian",
-            "liquid.model = 'lagrangian': is not in this version; use 'profile', or 'auto'",
+            "liquid.model=eulerian",
+            "liquid.model = 'eulerian': is not in this version; "
+            "use 'profile', 'lagrangian' or 'auto'",
         ),
         ("pipe.ends=open", "pipe.ends = 'open': must be 'periodic'"),
         ("liquid=3", "liquid = 3: must be a table of keys"),

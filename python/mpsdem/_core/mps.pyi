@@ -2,10 +2,12 @@
 Liquids. SI units throughout.
 """
 from __future__ import annotations
+import mpsdem._core.geometry
+import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['PipeProfile', 'friction_factor']
+__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'slip_divergence', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -64,6 +66,434 @@ class PipeProfile:
         """
         Reynolds number of bulk velocity and diameter [-].
         """
+class ReferenceDensity:
+    """
+    Sums over the undisturbed lattice, by which operators are scaled.
+    
+    Parameters
+    ----------
+    spacing : float
+        Of the particles [m].
+    effective_radius : float
+        Reach of the weight ``r_e / (0.85 r + 0.15 r_e) - 1`` [m], in (1, 10] spacings.
+    
+    References
+    ----------
+    Zhang, Wan & Hino (2014), doi:10.1016/S1001-6058(14)60065-8.
+    """
+    def __init__(self, *, spacing: typing.SupportsFloat | typing.SupportsIndex, effective_radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    @property
+    def effective_radius(self) -> float:
+        """
+        [m]
+        """
+    @property
+    def lambda_(self) -> float:
+        """
+        Mean of the distances squared, by weight [m2].
+        """
+    @property
+    def number_density(self) -> float:
+        """
+        Sum of the weights [-].
+        """
+    @property
+    def spacing(self) -> float:
+        """
+        [m]
+        """
+class MixingLength:
+    """
+    Nikuradse's mixing length of developed flow in a round pipe.
+    
+    ``l / R = 0.14 - 0.08 s^2 - 0.06 s^4`` with ``s = r / R``; the axis is the x axis.
+    
+    Parameters
+    ----------
+    pipe_radius : float
+        [m]
+    
+    References
+    ----------
+    Nikuradse (1932), VDI-Forschungsheft 356.
+    """
+    def __init__(self, *, pipe_radius: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def length(self, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Length l of the eddy viscosity l^2 |S|.
+        
+        Parameters
+        ----------
+        position : (n, 3) float64 ndarray
+            [m]
+        
+        Returns
+        -------
+        (n,) float64 ndarray
+            [m]
+        """
+class Smagorinsky:
+    """
+    Length of the eddies that the spacing does not resolve.
+    
+    A coarse pipe flow with it alone has too little friction: its particles carry no eddies.
+    
+    Parameters
+    ----------
+    spacing : float
+        Of the particles [m].
+    coefficient : float
+        Length over spacing [-], 0.1 to 0.2.
+    
+    References
+    ----------
+    Smagorinsky (1963), doi:10.1175/1520-0493(1963)091<0099:GCEWTP>2.3.CO;2.
+    """
+    def __init__(self, *, spacing: typing.SupportsFloat | typing.SupportsIndex, coefficient: typing.SupportsFloat | typing.SupportsIndex = 0.1) -> None:
+        ...
+    def length(self, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Length l of the eddy viscosity l^2 |S|.
+        
+        Parameters
+        ----------
+        position : (n, 3) float64 ndarray
+            [m]
+        
+        Returns
+        -------
+        (n,) float64 ndarray
+            [m]
+        """
+class WallFunction:
+    """
+    Wall shear from the speed at a distance from the wall.
+    
+    The greater of a laminar layer's and that of the logarithmic law with 0.41 and 5.2, shifted by the
+    roughness as in Colebrook's formula.
+    
+    Parameters
+    ----------
+    kinematic_viscosity : float
+        [m2/s]
+    roughness : float
+        Sand grains of the wall [m].
+    
+    References
+    ----------
+    Pope (2000), Turbulent Flows, ch. 7. Colebrook (1939), doi:10.1680/ijoti.1939.13150.
+    """
+    def __init__(self, *, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> None:
+        ...
+    def shear(self, *, speed: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], distance: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Wall shear stress over density.
+        
+        Parameters
+        ----------
+        speed : (n,) float64 ndarray
+            Along the wall, relative to it, >= 0 [m/s].
+        distance : (n,) float64 ndarray
+            From the wall, > 0 [m].
+        
+        Returns
+        -------
+        (n,) float64 ndarray
+            [m2/s2]
+        """
+class LiquidReport:
+    """
+    What a call of LagrangianLiquid.advance met.
+    """
+    @property
+    def clamped(self) -> int:
+        """
+        Pressures cut to the limit.
+        """
+    @property
+    def halvings(self) -> int:
+        """
+        Steps that were halved after a failed solve.
+        """
+    @property
+    def held_back(self) -> int:
+        """
+        Particles kept from going nearer to the wall than 0.3 spacings.
+        """
+    @property
+    def iterations(self) -> int:
+        """
+        Iterations of the pressure equation, all substeps.
+        """
+    @property
+    def mean_gradient(self) -> float:
+        """
+        Loss of pressure along the pipe, mean over the call [Pa/m].
+        """
+    @property
+    def residual(self) -> float:
+        """
+        Largest residual of the pressure equation, relative [-].
+        """
+    @property
+    def retries(self) -> int:
+        """
+        Pressure solves that had to start anew.
+        """
+    @property
+    def solve_seconds(self) -> float:
+        """
+        Time spent in the pressure equation, set-up included [s].
+        """
+    @property
+    def sound(self) -> bool:
+        """
+        False when the pressure could not be solved or speeds overflowed.
+        """
+    @property
+    def substeps(self) -> int:
+        ...
+class LagrangianLiquid:
+    """
+    The particle liquid of a full, straight, periodic pipe.
+    
+    Moving particles, walls of wall and ghost particles, pressure from a Poisson equation. A liquid of
+    the mean flow: its stable form damps fluctuations.
+    
+    Parameters
+    ----------
+    position, velocity : (n, 3) float64 ndarray
+        Of a layout [m], [m/s].
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    particle_spacing : float
+        Of that layout [m].
+    pipe_radius, pipe_length : float
+        [m].
+    density, kinematic_viscosity : float
+        [kg/m3], [m2/s].
+    roughness : float
+        Of the wall [m].
+    turbulent : bool
+        Mixing length and log-law wall function; else laminar with no-slip walls.
+    bulk_velocity : float
+        Held each step unless a gradient is given; scales the pressure limits in any case [m/s].
+    pressure_gradient : float, optional
+        Given loss of pressure along the pipe [Pa/m].
+    courant, tolerance, background, shift, pressure_limit : float
+        Numbers of the method [-].
+    threads : int
+        The results do not depend on it.
+    
+    References
+    ----------
+    Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
+    """
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulent: bool, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.1, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        ...
+    def __len__(self) -> int:
+        ...
+    def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex) -> LiquidReport:
+        """
+        Advance by dt [s], in as many substeps as Courant number and viscosity ask for.
+        """
+    def restore(self, state: dict[str, typing.Any]) -> None:
+        """
+        Continue bit-equal from a `state` of the same liquid.
+        """
+    def state(self) -> dict[str, typing.Any]:
+        """
+        The exact state as arrays, for `restore`.
+        """
+    def velocity_at(self, *, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.SupportsFloat | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Liquid velocity at points, averaged with the kernel W_s over a radius.
+        
+        Parameters
+        ----------
+        points : (n, 3) float64 ndarray
+            Positions, x within the pipe [m].
+        radius : float
+            Of the average [m].
+        
+        Returns
+        -------
+        (n, 3) float64 ndarray
+            [m/s]; zero where no liquid is within the radius.
+        """
+    @property
+    def bulk_velocity(self) -> float:
+        """
+        Mean of the liquid [m/s].
+        """
+    @property
+    def density_ratio(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) number density over its mean in the liquid [-].
+        """
+    @property
+    def density_scatter(self) -> float:
+        """
+        Standard deviation of the number density over its mean [-].
+        """
+    @property
+    def kinetic_energy(self) -> float:
+        """
+        Per mass [J/kg].
+        """
+    @property
+    def liquid_count(self) -> int:
+        ...
+    @property
+    def position(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m], in the order given.
+        """
+    @property
+    def pressure(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) p', less the mean gradient and static parts [Pa].
+        """
+    @property
+    def pressure_gradient(self) -> float:
+        """
+        Loss along the pipe in the last substep [Pa/m].
+        """
+    @property
+    def pressure_noise(self) -> float:
+        """
+        Root mean square change of p' in the last substep [Pa].
+        """
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) [m/s].
+        """
+    @property
+    def wall_shear(self) -> float:
+        """
+        Mean shear of the wall function [Pa]; 0 in laminar flow.
+        """
+def background_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, background: typing.SupportsFloat | typing.SupportsIndex, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Pressure gradient from p_j - p_i, and 2 p_b that spreads the particles evenly.
+    
+    Between liquid and wall the background pushes along the wall's normal alone.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    pressure : (n,) float64 ndarray
+        [Pa]
+    background : float
+        p_b [Pa]; 0.02 of density x bulk velocity^2 is a good choice.
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    wall : Plane or Cylinder
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [Pa/m]
+    """
+def corrected_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Pressure gradient from p_j - p_i and the inverse moment of the neighborhood.
+    
+    Exact for linear pressures wherever the neighbors are. Where they lie in a plane, the uncorrected
+    difference.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    pressure : (n,) float64 ndarray
+        [Pa]
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [Pa/m]
+    
+    References
+    ----------
+    Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
+    """
+def difference_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Pressure gradient from p_j - p_i.
+    
+    A constant pressure has none. Exact for linear pressures on the lattice; among scattered particles
+    the error does not fall with the spacing.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    pressure : (n,) float64 ndarray
+        [Pa]
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [Pa/m]
+    
+    References
+    ----------
+    Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def divergence(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Divergence of the velocity; walls count with the velocities they are given.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    velocity : (n, 3) float64 ndarray
+        [m/s]; 0 at the wall makes it a no-slip wall.
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        [1/s]
+    
+    References
+    ----------
+    Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def eddy_viscosity(model: MixingLength | Smagorinsky, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], shear_rate: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], largest: typing.SupportsFloat | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Eddy viscosity, the smaller of length^2 x rate of strain and `largest`.
+    
+    Parameters
+    ----------
+    model : MixingLength or Smagorinsky
+    position : (n, 3) float64 ndarray
+        [m]
+    shear_rate : (n,) float64 ndarray
+        [1/s]
+    largest : float
+        What the time step allows [m2/s]; 0.1 of spacing^2 / step holds.
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        [m2/s]
+    """
 def friction_factor(reynolds: typing.SupportsFloat | typing.SupportsIndex, relative_roughness: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> float:
     """
     Darcy friction factor of a full pipe.
@@ -87,4 +517,173 @@ def friction_factor(reynolds: typing.SupportsFloat | typing.SupportsIndex, relat
     References
     ----------
     Colebrook (1939), doi:10.1680/ijoti.1939.13150.
+    """
+def laplacian(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, field: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Laplacian from weighted differences.
+    
+    Second order on the lattice; among scattered particles its error grows as the spacing falls.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    field : (n,) or (n, 3) float64 ndarray
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) or (n, 3) float64 ndarray
+        Unit of the field / m2.
+    
+    References
+    ----------
+    Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def least_squares_laplacian(neighbors: mpsdem._core.neighbors.NeighborList, field: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> tuple[numpy.typing.NDArray[numpy.float64], int]:
+    """
+    Laplacian of the quadratic polynomial that fits the neighbors best.
+    
+    Exact for quadratic fields wherever the neighbors are. A wall particle's value is taken to hold on
+    the wall, at the point nearest to the particle; ghosts are left out.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    field : (n,) or (n, 3) float64 ndarray
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    wall : Plane or Cylinder
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    result : (n,) or (n, 3) float64 ndarray
+        Unit of the field / m2; 0 but for the liquid.
+    deficient : int
+        How many liquid particles have neighbors that fix no quadratic; their result is 0.
+    
+    References
+    ----------
+    Tamai & Koshizuka (2014), doi:10.1007/s40571-014-0027-2.
+    """
+def number_density(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Sum of the neighbors' weights.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        [-]; ``reference.number_density`` on the lattice.
+    
+    References
+    ----------
+    Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def shear_rate(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Rate of strain sqrt(2 S:S) among liquid particles.
+    
+    Exact for linear velocities wherever the neighbors are; rotation has none.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    velocity : (n, 3) float64 ndarray
+        [m/s]
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        [1/s]; 0 but for the liquid, and where its neighbors are too few.
+    """
+def slip_divergence(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Divergence of the velocity beside a wall that lets the liquid slip.
+    
+    Only the velocity through the wall counts, mirrored in it: plug flow has no divergence.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    velocity : (n, 3) float64 ndarray
+        Of liquid, wall and ghosts [m/s].
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    wall : Plane or Cylinder
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        [1/s]; 0 at ghosts.
+    """
+def sum_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Pressure gradient from p_j + p_i.
+    
+    Momentum is kept to round-off. A constant pressure pushes apart where particles lie unevenly, and
+    more so where the sums are cut off.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    pressure : (n,) float64 ndarray
+        [Pa]
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [Pa/m]
+    
+    References
+    ----------
+    Khayyer & Gotoh (2008), doi:10.1142/S0578563408001788.
+    """
+def viscous_acceleration(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, viscosity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Acceleration by viscosity between liquid particles, a pair's being the mean of two.
+    
+    Momentum is kept to round-off and kinetic energy falls. The wall's shear is not in it.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    velocity : (n, 3) float64 ndarray
+        [m/s]
+    viscosity : (n,) float64 ndarray
+        Kinematic, eddies included [m2/s].
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [m/s2]; 0 but for the liquid.
+    
+    References
+    ----------
+    Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
     """

@@ -176,6 +176,8 @@ class Case(Part):
             yield Problem(rule="a case needs [liquid], [solids] or both")
         if self.solids is not None:
             yield from self._solids_that_do_not_fit(self.solids)
+        if self.liquid is not None and self.liquid.model == "lagrangian":
+            yield from self._particles_that_do_not_fit()
         if self.output.every > self.end_time:
             yield Problem(
                 field="output.every",
@@ -191,6 +193,24 @@ class Case(Part):
                     unit="s",
                     rule=f"must be <= {self.end_time} s, the end_time",
                 )
+
+    def _particles_that_do_not_fit(self) -> Iterable[Problem]:
+        spacing = self.fidelity.resolved_particle_spacing(self.pipe.radius)
+        widest = self.pipe.radius / 2
+        if spacing > widest:
+            yield Problem(
+                field="fidelity.particle_spacing",
+                value=spacing,
+                unit="m",
+                rule=f"must be <= {widest:g} m, a quarter of the bore",
+            )
+        if self.pipe.length < 5 * spacing:
+            yield Problem(
+                field="pipe.length",
+                value=self.pipe.length,
+                unit="m",
+                rule=f"must be >= {5 * spacing:g} m, five particle spacings",
+            )
 
     def _solids_that_do_not_fit(self, solids: Solids) -> Iterable[Problem]:
         largest = solids.largest_diameter

@@ -9,6 +9,7 @@ from mpsdem.case.units import Quantity, Whole
 
 # Restitution stays within 0.001 at 0.1; bulk flow does not move up to 0.5.
 _RAYLEIGH_FRACTION = {"quick": 0.2, "balanced": 0.1, "fine": 0.05}
+_SPACINGS_ACROSS = {"quick": 10, "balanced": 16, "fine": 24}
 
 
 class Fidelity(Part):
@@ -28,6 +29,13 @@ class Fidelity(Part):
         Multiplies every modulus and stiffness [-]; less than 1 buys larger steps with overlap.
     smoothing_radius : float, optional
         Radius over which the void fraction is averaged [m]; by default 2.5 largest diameters.
+    particle_spacing : float, optional
+        Distance between the particles of a computed liquid [m]; by default 1/10, 1/16 or 1/24 of
+        the bore. The layout takes the nearest that divides the radius.
+    courant : float
+        Largest speed of a computed liquid times its step over the spacing [-].
+    pressure_tolerance : float
+        Residual at which the pressure equation is solved, relative [-].
     threads : int
         Threads of the kernels; 0 leaves the choice to the program. Results do not depend on it.
     """
@@ -38,6 +46,9 @@ class Fidelity(Part):
     coupling_step: Annotated[float, Quantity("s", above=0.0)] | None = None
     stiffness_factor: Annotated[float, Quantity(above=0.0, at_most=1.0)] = 1.0
     smoothing_radius: Annotated[float, Quantity("m", above=0.0)] | None = None
+    particle_spacing: Annotated[float, Quantity("m", above=0.0)] | None = None
+    courant: Annotated[float, Quantity(above=0.0, at_most=2.0)] = 0.8
+    pressure_tolerance: Annotated[float, Quantity(above=0.0, below=1.0)] = 1e-3
     threads: Annotated[int, Whole(at_least=0)] = 0
 
     @property
@@ -46,3 +57,9 @@ class Fidelity(Part):
         if self.rayleigh_fraction is not None:
             return self.rayleigh_fraction
         return _RAYLEIGH_FRACTION[self.level]
+
+    def resolved_particle_spacing(self, pipe_radius: float) -> float:
+        """Distance between the particles of a computed liquid in a bore of that radius [m]."""
+        if self.particle_spacing is not None:
+            return self.particle_spacing
+        return 2 * pipe_radius / _SPACINGS_ACROSS[self.level]

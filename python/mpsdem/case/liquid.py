@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Literal
 
 from pydantic import field_validator
@@ -16,7 +17,7 @@ class Liquid(Part):
 
     Parameters
     ----------
-    model : {"auto", "profile"}
+    model : {"auto", "profile", "lagrangian"}
         How the flow is computed; ``"auto"`` leaves the choice to the plan.
     density : float
         Density [kg/m3].
@@ -24,16 +25,31 @@ class Liquid(Part):
         Kinematic viscosity [m2/s].
     bulk_velocity : float
         Flow rate over the area of the bore, positive towards the outlet [m/s].
+    pressure_gradient : float, optional
+        Loss of pressure along the pipe that drives a computed liquid [Pa/m]; by default the one
+        that holds the bulk velocity. Where given, ``bulk_velocity`` is that of the start.
     """
 
-    model: Literal["auto", "profile"] = "auto"
+    model: Literal["auto", "profile", "lagrangian"] = "auto"
     density: Annotated[float, Quantity("kg/m3", above=0.0)]
     kinematic_viscosity: Annotated[float, Quantity("m2/s", above=0.0)]
     bulk_velocity: Annotated[float, Quantity("m/s")]
+    pressure_gradient: Annotated[float, Quantity("Pa/m")] | None = None
 
     @field_validator("model", mode="before")
     @classmethod
     def _is_here(cls, model: object) -> object:
-        if model in ("eulerian", "lagrangian"):
-            raise refusal(Problem(rule="is not in this version", remedy="use 'profile', or 'auto'"))
+        if model == "eulerian":
+            remedy = "use 'profile', 'lagrangian' or 'auto'"
+            raise refusal(Problem(rule="is not in this version", remedy=remedy))
         return model
+
+    def problems(self) -> Iterable[Problem]:
+        if self.pressure_gradient is not None and self.model != "lagrangian":
+            yield Problem(
+                field="pressure_gradient",
+                value=self.pressure_gradient,
+                unit="Pa/m",
+                rule="drives a computed liquid only",
+                remedy="set model = 'lagrangian', or leave it out",
+            )

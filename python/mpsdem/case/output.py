@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from mpsdem.case.part import FromList, Part
-from mpsdem.case.units import Quantity
+from mpsdem.case.units import Quantity, Whole
 
 
 class Output(Part):
@@ -19,6 +19,9 @@ class Output(Part):
         Whether the run ends with its figures drawn.
     times : tuple of float, optional
         Times of the side views and cross-sections [s]; by default the program chooses.
+    liquid_stride : int, optional
+        One of how many particles of a computed liquid is written, 0 for none; by default as many
+        as keep a frame below 10,000 of them.
     checkpoint_every : float, optional
         Simulated time between two checkpoints [s]; by default one a minute of wall clock.
     """
@@ -28,4 +31,5 @@ class Output(Part):
     times: Annotated[tuple[Annotated[float, Quantity("s", at_least=0.0)], ...], FromList] | None = (
         None
     )
+    liquid_stride: Annotated[int, Whole(at_least=0)] | None = None
     checkpoint_every: Annotated[float, Quantity("s", above=0.0)] | None = None

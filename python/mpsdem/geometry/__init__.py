@@ -1,6 +1,15 @@
 """Where things are when a run starts."""
 
+from mpsdem.geometry.layout import Kind, Layout, lattice_layout, ring_layout
 from mpsdem.geometry.placing import Placement, place_solids
 from mpsdem.geometry.size import sample_diameters
 
-__all__ = ["Placement", "place_solids", "sample_diameters"]
+__all__ = [
+    "Kind",
+    "Layout",
+    "Placement",
+    "lattice_layout",
+    "place_solids",
+    "ring_layout",
+    "sample_diameters",
+]

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from mpsdem.case import Case, CaseError, Problem
 from mpsdem.contacts import rayleigh_time
 from mpsdem.plan.scales import (
     drag_rate,
     impacts,
+    liquid_model,
     materials,
+    pipe_profile,
     require_speed,
     solids_of,
     spring_stiffness,
@@ -23,6 +27,7 @@ _LARGEST_SHARE = 0.5
 # Errors were measured where a collision lasts three Rayleigh times (1 m/s, E = 1e8 Pa, d = 20 mm);
 # a faster one is shorter, and is resolved by as many steps.
 _COLLISION_WORTH = 1 / 3
+_VISCOUS_SHARE = 0.1  # [-] of spacing^2 / viscosity, as the liquid's own step takes
 _COUPLING_SHARE = 0.1  # [-] of the times over which the forces on a solid change
 SOLID_RATE = 2e7  # solids x steps per second on one thread in a dense bed; in the open 1.4e8
 
@@ -132,6 +137,24 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
     given = case.fidelity.coupling_step
     limits = _limits("coupling_step", given=given, share=_COUPLING_SHARE, scales=scales)
     return (*limits, every, prompt)
+
+
+def liquid_limits(case: Case) -> Iterator[Limit]:
+    """Limits of the step of a particle liquid at its expected speed; none for other liquids.
+
+    Where it is faster than expected, it parts a step itself.
+    """
+    if case.liquid is None or liquid_model(case) != "lagrangian":
+        return
+    spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+    profile = pipe_profile(case)
+    on_axis = abs(float(profile.velocity(np.zeros((1, 3)))[0, 0]))
+    courant = case.fidelity.courant
+    if on_axis > 0:
+        name = f"{courant:g} of the liquid's time to cross a spacing at {on_axis:.3g} m/s"
+        yield Limit(name=name, value=courant * spacing / on_axis)
+    viscous = _VISCOUS_SHARE * spacing**2 / case.liquid.kinematic_viscosity
+    yield Limit(name=f"{_VISCOUS_SHARE:g} of the viscous time of a spacing", value=viscous)
 
 
 def _limits(

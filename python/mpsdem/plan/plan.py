@@ -10,12 +10,21 @@ from mpsdem import _core
 from mpsdem.analysis.correlations import durand_deposition_velocity
 from mpsdem.case import Case
 from mpsdem.plan.clock import Clock
-from mpsdem.plan.limits import SOLID_RATE, Limit, Step, coupling_limits, solid_limits
+from mpsdem.plan.limits import (
+    SOLID_RATE,
+    Limit,
+    Step,
+    coupling_limits,
+    liquid_limits,
+    solid_limits,
+)
 from mpsdem.plan.scales import (
     drag_rate,
     impact_speed,
     impacts,
+    liquid_model,
     mean_diameter,
+    particle_count,
     pipe_profile,
     smoothing_radius,
     solids_of,
@@ -29,6 +38,8 @@ _SERIAL = 5000  # solids up to which threads cost more than they gain
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
 _CALL_TIME = 1e-4  # [s] one turn of the time loop
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
+_PARTICLE_TIME = 3e-6  # [s] one step of one liquid particle, its pressure included
+_PARTICLE_BYTES = 1300  # memory of one liquid particle with its neighbors
 _BASE_BYTES = 150_000_000  # memory of the program before any solid
 
 
@@ -73,10 +84,16 @@ class Plan:
         In the order of the time step.
     impact_speed : float
         Speed of the collisions that the contacts are judged by [m/s]; 0 without solids.
+    liquid_model : {"profile", "lagrangian"} or None
+        How the liquid is computed; None without any.
     solid_step : Step or None
         Step of the solids; None without any.
     coupling_step : Step
         Time between two looks at the liquid.
+    liquid_step : Step or None
+        Step of a liquid that is computed; None for any other.
+    turns_per_liquid_step : int
+        Coupling steps to a liquid step.
     clock : Clock
         Both steps, in whole numbers.
     threads : int
@@ -92,8 +109,11 @@ class Plan:
     stages: tuple[Planned, ...]
     left_out: tuple[Planned, ...]
     impact_speed: float
+    liquid_model: str | None
     solid_step: Step | None
     coupling_step: Step
+    liquid_step: Step | None
+    turns_per_liquid_step: int
     clock: Clock
     threads: int
     estimate: Estimate
@@ -116,7 +136,10 @@ def make_plan(case: Case) -> Plan:
     speed = impact_speed(case)
     of_solids = solid_limits(case, speed)
     of_coupling = coupling_limits(case, of_solids)
-    steps_per_frame = _whole(case.output.every / _shortest(of_coupling))
+    of_liquid = tuple(liquid_limits(case))
+    liquid_steps = _whole(case.output.every / _shortest(of_liquid)) if of_liquid else 1
+    turns = _whole(case.output.every / liquid_steps / _shortest(of_coupling))
+    steps_per_frame = liquid_steps * turns
     coupling_step = case.output.every / steps_per_frame
     substeps = _whole(coupling_step / _shortest(of_solids)) if of_solids else 0
     clock = Clock(
@@ -125,20 +148,22 @@ def make_plan(case: Case) -> Plan:
         steps_per_frame=steps_per_frame,
         substeps=substeps,
     )
-    threads = case.fidelity.threads or (
-        1 if case.solids_count < _SERIAL else _core.available_threads()
-    )
+    crowd = max(case.solids_count, particle_count(case))
+    threads = case.fidelity.threads or (1 if crowd < _SERIAL else _core.available_threads())
     return Plan(
         case=case,
         numbers=tuple(_numbers(case)),
         stages=tuple(_stages(case, clock)),
         left_out=tuple(_left_out(case)),
         impact_speed=speed,
+        liquid_model=liquid_model(case),
         solid_step=Step(value=coupling_step / substeps, limits=of_solids) if of_solids else None,
         coupling_step=Step(value=coupling_step, limits=of_coupling),
+        liquid_step=Step(value=turns * coupling_step, limits=of_liquid) if of_liquid else None,
+        turns_per_liquid_step=turns,
         clock=clock,
         threads=threads,
-        estimate=_estimate(case, clock, threads),
+        estimate=_estimate(case, clock, turns, threads),
         warnings=tuple(_warnings(case, speed)),
     )
 
@@ -219,10 +244,20 @@ def _needs_void_fraction(case: Case) -> bool:
 
 def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
     solids, liquid = case.solids, case.liquid
+    moving = liquid_model(case) == "lagrangian"
+    if moving:
+        flow = (
+            "laminar, no-slip walls"
+            if pipe_profile(case).laminar
+            else "mixing length and log-law wall function, as the flow is turbulent"
+        )
+        reason = f"about {particle_count(case)} particles were asked for; {flow}"
+        yield Planned(name="AdvanceLiquid", reason=reason)
     if solids is not None:
         if liquid is not None:
             flow = "parabola" if pipe_profile(case).laminar else "turbulent profile"
-            yield Planned(name="SampleLiquid", reason=f"the liquid is a prescribed {flow}")
+            reason = "of the particles near a solid" if moving else f"it is a prescribed {flow}"
+            yield Planned(name="SampleLiquid", reason=f"the velocity of the liquid: {reason}")
             if _needs_void_fraction(case):
                 reason = f"the drag law {solids.drag} depends on the share of liquid at a solid"
                 yield Planned(name="FindVoidFraction", reason=reason)
@@ -237,14 +272,15 @@ def _left_out(case: Case) -> Iterator[Planned]:
     solids, liquid = case.solids, case.liquid
     if liquid is None:
         yield Planned(name="liquid", reason="the case has no [liquid]: dry")
-    else:
-        reason = "the profile is prescribed, and steady"
-        yield Planned(name="PredictLiquid, ProjectPressure", reason=reason)
+    elif liquid_model(case) == "profile":
+        yield Planned(name="AdvanceLiquid", reason="the profile is prescribed, and steady")
+    elif pipe_profile(case).laminar:
+        yield Planned(name="turbulence", reason="the Reynolds number is below 2300")
     if solids is None:
         yield Planned(name="solids", reason="the case has no [solids]: clear liquid")
         return
     if liquid is not None:
-        reason = "a prescribed liquid cannot yield; the pressure gradient counts the solids' drag"
+        reason = "the liquid does not feel the solids; the pressure gradient counts their drag"
         yield Planned(name="ExchangeMomentum", reason=reason)
         if not _needs_void_fraction(case):
             alone = "a lone solid has no neighbors"
@@ -254,15 +290,16 @@ def _left_out(case: Case) -> Iterator[Planned]:
         yield Planned(name="rolling resistance", reason="solids.rolling_friction = 0")
 
 
-def _estimate(case: Case, clock: Clock, threads: int) -> Estimate:
+def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     count, steps = case.solids_count, clock.steps
+    particles = particle_count(case)
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
         wall_seconds=(
             count * steps * (clock.substeps / SOLID_RATE / threads + _SAMPLE_TIME)
-            + steps * _CALL_TIME
+            + steps * (_CALL_TIME + particles * _PARTICLE_TIME / turns / threads)
         ),
-        memory_bytes=_BASE_BYTES + count * _SOLID_BYTES,
+        memory_bytes=_BASE_BYTES + count * _SOLID_BYTES + particles * _PARTICLE_BYTES,
         disk_bytes=frame_bytes * (clock.frames + 1),
     )
 

@@ -148,6 +148,24 @@ def impact_speed(case: Case) -> float:
     return math.hypot(start, math.sqrt(2 * case.gravity * drop))
 
 
+def liquid_model(case: Case) -> str | None:
+    """Name of the model that computes the liquid; None without any.
+
+    What is asked for, else the prescribed profile: nothing here makes the liquid yield to solids.
+    """
+    if case.liquid is None:
+        return None
+    return "profile" if case.liquid.model == "auto" else case.liquid.model
+
+
+def particle_count(case: Case) -> int:
+    """Particles of the liquid, about; 0 unless it is made of them."""
+    if liquid_model(case) != "lagrangian":
+        return 0
+    spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+    return round(case.pipe.bore_volume / spacing**3)
+
+
 def pipe_profile(case: Case) -> mps.PipeProfile:
     """Developed profile of the liquid in the pipe."""
     assert case.liquid is not None

@@ -13,7 +13,7 @@ import numpy as np
 
 from mpsdem.case import Case, load_case
 from mpsdem.info import provenance
-from mpsdem.plan import Plan, make_plan, pipe_profile
+from mpsdem.plan import Plan, make_plan
 from mpsdem.results import (
     CheckpointError,
     DirectoryLock,
@@ -35,6 +35,7 @@ from mpsdem.simulation.watch import (
     signals,
 )
 from mpsdem.stages import (
+    AdvanceLiquid,
     AdvanceSolids,
     SimulationDiverged,
     Stage,
@@ -43,8 +44,6 @@ from mpsdem.stages import (
     build_state,
     check,
 )
-
-_PROFILE_POINTS = 101  # of the liquid's profile in the results
 
 
 class Simulation:
@@ -181,14 +180,10 @@ class Simulation:
         return state, self._new_writer(state), stopwatch
 
     def _new_writer(self, state: State) -> ResultsWriter:
-        solids, liquid = {}, {}
+        solids, liquid = {}, {} if state.liquid is None else state.liquid.static_fields()
         if self.case.solids is not None:
             radius = state.solids.radius
             solids = {"radius": radius, "density": np.full_like(radius, self.case.solids.density)}
-        if self.case.liquid is not None:
-            r = np.linspace(0, self.case.pipe.radius, _PROFILE_POINTS)
-            velocity = pipe_profile(self.case).velocity(np.outer(r, [0.0, 0.0, 1.0]))
-            liquid = {"profile_radius": r, "profile_velocity": velocity[:, 0]}
         return ResultsWriter(
             self.directory,
             case=self.case,
@@ -200,7 +195,7 @@ class Simulation:
     def _begin(self, stages: Sequence[Stage], state: State, stopwatch: Stopwatch) -> None:
         """Record what there is before anything has moved."""
         for stage in stages:
-            if not isinstance(stage, AdvanceSolids):
+            if not isinstance(stage, AdvanceLiquid | AdvanceSolids):
                 stage(state, 0.0)
         self._write_checkpoint(state, stopwatch)
 
@@ -216,6 +211,8 @@ class Simulation:
         state.step, state.time = checkpoint.step, checkpoint.time
         if state.population is not None:
             state.population.restore(checkpoint.state["solids"])
+        if state.liquid is not None:
+            state.liquid.restore(checkpoint.state["liquid"])
         for name, value in checkpoint.state["stages"].items():
             setattr(state, name, value)
         LOG.info("resumed at %g s", state.time)
@@ -224,7 +221,7 @@ class Simulation:
 
     def _write_checkpoint(self, state: State, stopwatch: Stopwatch) -> None:
         check(state, self.case.pipe.radius)
-        kept = {f.name for f in fields(State)} - {"population", "step", "time"}
+        kept = {f.name for f in fields(State)} - {"population", "liquid", "step", "time"}
         write_checkpoint(
             self.directory / "checkpoint.h5",
             case_toml=self.case.to_toml(),
@@ -232,6 +229,7 @@ class Simulation:
             step=state.step,
             state={
                 "solids": {} if state.population is None else state.population.state(),
+                "liquid": {} if state.liquid is None else state.liquid.state(),
                 "stages": {name: getattr(state, name) for name in kept},
                 "spent": {"wall": stopwatch.wall, "cpu": stopwatch.cpu},
             },

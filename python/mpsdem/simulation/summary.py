@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from mpsdem.analysis import extent
+from mpsdem.geometry import Kind
+from mpsdem.liquids import ParticleLiquid
 from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import Results
 from mpsdem.stages import State
@@ -40,16 +42,14 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
         "time": state.time,
         "steps": state.step,
         "solid_steps": state.step * plan.clock.substeps,
-        "liquid_model": None if plan.case.liquid is None else "profile",
+        "liquid_model": plan.liquid_model,
         "solids_count": plan.case.solids_count,
     }
-    values |= _of_liquid(plan, results) | _of_solids(plan, state, results)
+    values |= _of_liquid(plan, state, results) | _of_solids(plan, state, results)
     values["warnings"] = [*plan.warnings, *_warnings(values)]
-    reasons = {
-        "liquid_count": "the liquid has no particles",
-        "mass_error": "the liquid has no particles",
-        "exchange_error": "a prescribed liquid takes no impulse",
-    }
+    reasons = {"exchange_error": "the liquid takes no impulse from the solids"}
+    if plan.liquid_model != "lagrangian":
+        reasons |= dict.fromkeys(("liquid_count", "mass_error"), "the liquid has no particles")
     if plan.case.liquid is None:
         reasons |= dict.fromkeys((*reasons, "liquid_model", *_LIQUID_KEYS), "no liquid")
     elif plan.case.liquid.bulk_velocity == 0:
@@ -94,15 +94,34 @@ def _mean(results: Results, name: str) -> float:
     return float(results.diagnostics[name][second_half].mean())
 
 
-def _of_liquid(plan: Plan, results: Results) -> dict[str, Any]:
+def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
     case, liquid = plan.case, plan.case.liquid
     if liquid is None:
         return {}
-    return {
-        "bulk_velocity": liquid.bulk_velocity,
+    values = {
+        "bulk_velocity": _mean(results, "bulk_velocity"),
         "pressure_gradient": _mean(results, "pressure_gradient"),
         "pressure_gradient_static": float(-liquid.density * gravity(case)[0]),
         "friction_factor": pipe_profile(case).friction_factor,
+    }
+    if isinstance(state.liquid, ParticleLiquid):
+        values |= _of_particles(state.liquid, results)
+        velocity = values["bulk_velocity"]
+        if case.solids is None and velocity != 0:
+            dynamic = liquid.density * velocity * abs(velocity) / 2
+            values["friction_factor"] = values["pressure_gradient"] * 2 * case.pipe.radius / dynamic
+    return values
+
+
+def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
+    count = liquid.particles.liquid_count
+    return {
+        "liquid_count": count,
+        # particles carry the mass: none is made or lost, or the count would tell
+        "mass_error": abs(count - int((liquid.kind == Kind.LIQUID).sum())) / count,
+        "pressure_iterations": _mean(results, "pressure_iterations"),
+        "pressures_clamped": int(results.diagnostics["clamped"].sum()),
+        "particles_held_back": int(results.diagnostics["held_back"].sum()),
     }
 
 

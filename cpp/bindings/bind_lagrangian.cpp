@@ -1,0 +1,175 @@
+#include "bindings/array.hpp"
+#include "mps/lagrangian/liquid.hpp"
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+namespace mpsdem::bindings {
+
+using namespace pybind11::literals;
+using mps::lagrangian::AdvanceReport;
+using mps::lagrangian::Liquid;
+
+namespace {
+
+std::vector<mps::Kind> kinds(const Array<std::int8_t>& kind) {
+    std::vector<mps::Kind> out;
+    for (const std::int8_t k : values(kind, "kind")) {
+        require(k == -2 || k == -1 || k == 2,
+                "kind must be -2 (wall), -1 (ghost) or 2 (liquid), not " + std::to_string(k));
+        out.push_back(static_cast<mps::Kind>(k));
+    }
+    return out;
+}
+
+} // namespace
+
+void bind_lagrangian(py::module_ m) {
+    py::class_<AdvanceReport>(m, "LiquidReport", "What a call of LagrangianLiquid.advance met.")
+        .def_readonly("substeps", &AdvanceReport::substeps)
+        .def_readonly("iterations", &AdvanceReport::iterations,
+                      "Iterations of the pressure equation, all substeps.")
+        .def_readonly("retries", &AdvanceReport::retries, "Pressure solves that had to start anew.")
+        .def_readonly("halvings", &AdvanceReport::halvings,
+                      "Steps that were halved after a failed solve.")
+        .def_readonly("residual", &AdvanceReport::residual,
+                      "Largest residual of the pressure equation, relative [-].")
+        .def_readonly("mean_gradient", &AdvanceReport::mean_gradient,
+                      "Loss of pressure along the pipe, mean over the call [Pa/m].")
+        .def_readonly("clamped", &AdvanceReport::clamped, "Pressures cut to the limit.")
+        .def_readonly("held_back", &AdvanceReport::held_back,
+                      "Particles kept from going nearer to the wall than 0.3 spacings.")
+        .def_readonly("solve_seconds", &AdvanceReport::solve_seconds,
+                      "Time spent in the pressure equation, set-up included [s].")
+        .def_readonly("sound", &AdvanceReport::sound,
+                      "False when the pressure could not be solved or speeds overflowed.");
+
+    py::class_<Liquid>(m, "LagrangianLiquid",
+                       R"(The particle liquid of a full, straight, periodic pipe.
+
+Moving particles, walls of wall and ghost particles, pressure from a Poisson equation. A liquid of
+the mean flow: its stable form damps fluctuations.
+
+Parameters
+----------
+position, velocity : (n, 3) float64 ndarray
+    Of a layout [m], [m/s].
+kind : (n,) int8 ndarray
+    2 liquid, -2 wall, -1 ghost.
+particle_spacing : float
+    Of that layout [m].
+pipe_radius, pipe_length : float
+    [m].
+density, kinematic_viscosity : float
+    [kg/m3], [m2/s].
+roughness : float
+    Of the wall [m].
+turbulent : bool
+    Mixing length and log-law wall function; else laminar with no-slip walls.
+bulk_velocity : float
+    Held each step unless a gradient is given; scales the pressure limits in any case [m/s].
+pressure_gradient : float, optional
+    Given loss of pressure along the pipe [Pa/m].
+courant, tolerance, background, shift, pressure_limit : float
+    Numbers of the method [-].
+threads : int
+    The results do not depend on it.
+
+References
+----------
+Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
+)")
+        .def(py::init([](const Array<Real>& position, const Array<Real>& velocity,
+                         const Array<std::int8_t>& kind, Real particle_spacing, Real pipe_radius,
+                         Real pipe_length, Real density, Real kinematic_viscosity, Real roughness,
+                         bool turbulent, Real bulk_velocity, std::optional<Real> pressure_gradient,
+                         Real courant, Real tolerance, Real background, Real shift,
+                         Real pressure_limit, int threads) {
+                 using namespace mps::lagrangian;
+                 return Liquid(vectors(position, "position"), vectors(velocity, "velocity"),
+                               kinds(kind), geometry::Cylinder(pipe_radius, {}), pipe_radius,
+                               pipe_length, density, kinematic_viscosity, roughness,
+                               turbulent ? Flow::turbulent : Flow::laminar,
+                               {bulk_velocity, pressure_gradient},
+                               {particle_spacing, courant, tolerance, background, shift,
+                                pressure_limit, threads});
+             }),
+             py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
+             "pipe_radius"_a, "pipe_length"_a, "density"_a, "kinematic_viscosity"_a, "roughness"_a,
+             "turbulent"_a, "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
+             "courant"_a = 0.8, "tolerance"_a = 1e-3, "background"_a = 0.02, "shift"_a = 0.1,
+             "pressure_limit"_a = 0.25, "threads"_a = 1)
+        .def("__len__", &Liquid::size)
+        .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
+             "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
+        .def(
+            "velocity_at",
+            [](const Liquid& liquid, const Array<Real>& points, Real radius) {
+                return array(liquid.velocity_at(vectors(points, "points"), radius));
+            },
+            py::kw_only(), "points"_a, "radius"_a,
+            R"(Liquid velocity at points, averaged with the kernel W_s over a radius.
+
+Parameters
+----------
+points : (n, 3) float64 ndarray
+    Positions, x within the pipe [m].
+radius : float
+    Of the average [m].
+
+Returns
+-------
+(n, 3) float64 ndarray
+    [m/s]; zero where no liquid is within the radius.
+)")
+        .def_property_readonly("liquid_count", &Liquid::liquid_count)
+        .def_property_readonly(
+            "position", [](const Liquid& l) { return array(l.position()); },
+            "(n, 3) [m], in the order given.")
+        .def_property_readonly(
+            "velocity", [](const Liquid& l) { return array(l.velocity()); }, "(n, 3) [m/s].")
+        .def_property_readonly(
+            "pressure", [](const Liquid& l) { return array(l.pressure()); },
+            "(n,) p', less the mean gradient and static parts [Pa].")
+        .def_property_readonly(
+            "density_ratio", [](const Liquid& l) { return array(l.density_ratio()); },
+            "(n,) number density over its mean in the liquid [-].")
+        .def_property_readonly("bulk_velocity", &Liquid::bulk_velocity, "Mean of the liquid [m/s].")
+        .def_property_readonly("pressure_gradient", &Liquid::pressure_gradient,
+                               "Loss along the pipe in the last substep [Pa/m].")
+        .def_property_readonly("wall_shear", &Liquid::wall_shear,
+                               "Mean shear of the wall function [Pa]; 0 in laminar flow.")
+        .def_property_readonly("kinetic_energy", &Liquid::kinetic_energy, "Per mass [J/kg].")
+        .def_property_readonly("density_scatter", &Liquid::density_scatter,
+                               "Standard deviation of the number density over its mean [-].")
+        .def_property_readonly("pressure_noise", &Liquid::pressure_noise,
+                               "Root mean square change of p' in the last substep [Pa].")
+        .def(
+            "state",
+            [](const Liquid& l) {
+                const auto s = l.snapshot();
+                return py::dict("position"_a = array(s.position), "velocity"_a = array(s.velocity),
+                                "pressure"_a = array(s.pressure), "kind"_a = array(s.kind),
+                                "id"_a = array(s.id));
+            },
+            "The exact state as arrays, for `restore`.")
+        .def(
+            "restore",
+            [](Liquid& l, const py::dict& state) {
+                const auto position = state["position"].cast<Array<Real>>();
+                const auto velocity = state["velocity"].cast<Array<Real>>();
+                const auto pressure = state["pressure"].cast<Array<Real>>();
+                const auto kind = state["kind"].cast<Array<std::int8_t>>();
+                const auto id = state["id"].cast<Array<Index>>();
+                const auto copy = [](auto span) {
+                    return std::vector<std::remove_cvref_t<decltype(span[0])>>(span.begin(),
+                                                                               span.end());
+                };
+                l.restore({copy(vectors(position, "position")), copy(vectors(velocity, "velocity")),
+                           copy(values(pressure, "pressure")), copy(values(kind, "kind")),
+                           copy(values(id, "id"))});
+            },
+            "state"_a, "Continue bit-equal from a `state` of the same liquid.");
+}
+
+} // namespace mpsdem::bindings

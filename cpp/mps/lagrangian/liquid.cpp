@@ -1,0 +1,473 @@
+#include "mps/lagrangian/liquid.hpp"
+
+#include "core/check.hpp"
+#include "mps/divergence.hpp"
+#include "mps/gradient.hpp"
+#include "mps/least_squares_laplacian.hpp"
+#include "mps/number_density.hpp"
+#include "mps/shear_rate.hpp"
+#include "mps/viscosity.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+namespace mpsdem::mps::lagrangian {
+
+namespace {
+
+constexpr Real reach = 2.1;          // [-] r_e over the spacing, for every operator
+constexpr Real nearest = 0.3;        // [-] spacings from the wall, as near as liquid may come
+constexpr Real viscous_limit = 0.1;  // [-] largest nu dt / dx^2
+constexpr Real most_substeps = 1e4;  // [-] of one call; beyond it the speeds have run away
+constexpr int most_halvings = 5;     // [-] of one call
+constexpr int most_iterations = 500; // [-] of the pressure equation
+constexpr Index none = std::numeric_limits<Index>::max();
+
+template <class T>
+void reorder(std::vector<T>& values, const std::vector<Index>& order) {
+    std::vector<T> sorted(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
+    values = std::move(sorted);
+}
+
+} // namespace
+
+Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
+               std::span<const Kind> kind, const geometry::Cylinder& wall, Real pipe_radius,
+               Real pipe_length, Real density, Real kinematic_viscosity, Real roughness, Flow flow,
+               const Drive& drive, const Numerics& numerics)
+    : wall_(wall), pipe_radius_(pipe_radius), pipe_length_(pipe_length), density_(density),
+      viscosity_(kinematic_viscosity), flow_(flow), drive_(drive), numerics_(numerics),
+      reference_(numerics.particle_spacing, reach * numerics.particle_spacing),
+      wall_function_(kinematic_viscosity, roughness), mixing_length_(pipe_radius),
+      neighbors_(reach * numerics.particle_spacing, pipe_length),
+      position_(position.begin(), position.end()), velocity_(velocity.begin(), velocity.end()),
+      kind_(kind.begin(), kind.end()) {
+    require(position.size() == velocity.size() && position.size() == kind.size(),
+            "Liquid: position, velocity and kind must have the same length");
+    require(density > 0, "Liquid: density must be > 0 kg/m3");
+    require(numerics.courant > 0, "Liquid: courant must be > 0");
+    require(numerics.tolerance > 0, "Liquid: tolerance must be > 0");
+    require(numerics.threads >= 1, "Liquid: threads must be >= 1");
+    liquid_count_ = static_cast<std::size_t>(std::ranges::count(kind_, Kind::liquid));
+    require(liquid_count_ > 0, "Liquid: at least one liquid particle is needed");
+    pressure_.assign(size(), 0);
+    id_.resize(size());
+    std::iota(id_.begin(), id_.end(), Index{0});
+}
+
+AdvanceReport Liquid::advance(Real dt) {
+    require(dt > 0, "advance: dt must be > 0 s");
+    AdvanceReport report;
+    // The coarse matrix lives within a call, so that the state between calls is all there is.
+    preconditioner_.reset();
+    Real longest = dt;
+    for (Real left = dt; left > 1e-9 * dt && report.sound;) {
+        const Real count = std::ceil(left / std::min(stable_step(), longest) - 1e-9);
+        if (!(count < most_substeps)) {
+            report.sound = false;
+            break;
+        }
+        const Real length = left / std::max(count, 1.);
+        if (!step(length, report)) {
+            longest = length / 2;
+            report.sound = ++report.halvings <= most_halvings;
+            continue;
+        }
+        left -= length;
+        ++report.substeps;
+        report.mean_gradient += gradient_ * length / dt;
+    }
+    return report;
+}
+
+/// Largest step for the speeds and the molecular viscosity [s]; the eddy viscosity is cut to fit.
+Real Liquid::stable_step() const {
+    Real fastest2 = 0;
+    for (const Vec3& u : velocity_) fastest2 = std::max(fastest2, dot(u, u));
+    const Real dx = numerics_.particle_spacing;
+    const Real speed = std::max(std::sqrt(fastest2), std::numeric_limits<Real>::min());
+    return std::min(numerics_.courant * dx / speed, viscous_limit * dx * dx / viscosity_);
+}
+
+/// One substep; `false` and the state as before where the pressure could not be solved.
+bool Liquid::step(Real dt, AdvanceReport& report) {
+    sort();
+    neighbors_.find(position_, numerics_.threads);
+    const std::vector<Vec3> velocity_before = velocity_;
+    predict(dt);
+    assemble(dt);
+    if (!solve_pressure(report)) {
+        velocity_ = velocity_before;
+        return false;
+    }
+    take_pressure(report);
+    correct(dt);
+    move(dt, report);
+    return true;
+}
+
+/// Put neighbors in space near in memory.
+void Liquid::sort() {
+    const auto order = neighbors::cell_order(position_, neighbors_.radius(), pipe_length_);
+    reorder(position_, order);
+    reorder(velocity_, order);
+    reorder(kind_, order);
+    reorder(pressure_, order);
+    reorder(id_, order);
+}
+
+/// Viscosity and wall shear, on the liquid.
+void Liquid::predict(Real dt) {
+    const std::size_t n = size();
+    const int threads = numerics_.threads;
+    const Real dx = numerics_.particle_spacing;
+    acceleration_.resize(n);
+    if (flow_ == Flow::laminar) {
+        std::vector<std::uint8_t> deficient(n);
+        least_squares_laplacian<geometry::Cylinder, Vec3>(wall_, neighbors_, kind_, velocity_,
+                                                          threads, acceleration_, deficient);
+        for (Vec3& a : acceleration_) a = viscosity_ * a;
+    } else {
+        scalar_.resize(n);
+        eddy_viscosity_.resize(n);
+        shear_rate(reference_.weight, neighbors_, kind_, velocity_, threads, scalar_);
+        eddy_viscosity(mixing_length_, position_, scalar_, viscous_limit * dx * dx / dt, threads,
+                       eddy_viscosity_);
+        for (Real& nu : eddy_viscosity_) nu += viscosity_;
+        viscous_acceleration(reference_, neighbors_, kind_, eddy_viscosity_, velocity_, threads,
+                             acceleration_);
+        add_wall_shear();
+    }
+    parallel_for(n, threads, [&](std::size_t i) {
+        if (kind_[i] == Kind::liquid) velocity_[i] += dt * acceleration_[i];
+    });
+}
+
+/// Shear of the log law on the liquid nearer to the wall than a spacing. The layer's particles
+/// carry the shear of the whole wall, however many they are at the moment.
+void Liquid::add_wall_shear() {
+    const Real dx = numerics_.particle_spacing;
+    const auto liquid = static_cast<Real>(liquid_count_);
+    std::size_t layer = 0;
+    Real sum = 0; // of shear over density
+    scalar_.assign(size(), 0);
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (kind_[i] != Kind::liquid) continue;
+        const Real distance = wall_.at(position_[i]).distance;
+        if (distance >= dx) continue;
+        const Real speed = norm(velocity_[i]);
+        ++layer;
+        if (speed == 0) continue;
+        const Real shear = wall_function_.shear(speed, std::max(distance, nearest * dx));
+        scalar_[i] = shear / speed;
+        sum += shear * velocity_[i].x / speed;
+    }
+    if (layer == 0) return;
+    const auto count = static_cast<Real>(layer);
+    // wall area over the layer's volume: 2 pi R L / (count pi R^2 L / liquid)
+    const Real per_volume = 2 * liquid / (pipe_radius_ * count);
+    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
+        acceleration_[i] -= (per_volume * scalar_[i]) * velocity_[i];
+    });
+    wall_shear_ = density_ * sum / count;
+}
+
+/// Solve for p'; where the solve fails, once more from zero with a new coarse matrix.
+bool Liquid::solve_pressure(AdvanceReport& report) {
+    const auto start = std::chrono::steady_clock::now();
+    const int threads = numerics_.threads;
+    const linear::LaplacianMatrix matrix(row_, column_, weight_, {}, threads);
+    const linear::Clusters clusters(matrix);
+    bool solved = false;
+    for (int attempt = 0; attempt < 2 && !solved; ++attempt) {
+        if (attempt > 0) {
+            std::ranges::fill(solution_, Real{0});
+            preconditioner_.reset();
+            ++report.retries;
+        }
+        if (preconditioner_) {
+            preconditioner_->follow(matrix, unknown_position_);
+        } else {
+            preconditioner_.emplace(
+                matrix, linear::Cloud{unknown_position_, numerics_.particle_spacing, pipe_length_},
+                threads);
+        }
+        const auto solve =
+            linear::conjugate_gradients(matrix, clusters, *preconditioner_, right_hand_side_,
+                                        numerics_.tolerance, most_iterations, threads, solution_);
+        report.iterations += solve.iterations;
+        report.residual = std::max(report.residual, solve.residual);
+        solved = solve.outcome == linear::Outcome::converged;
+    }
+    report.solve_seconds +=
+        std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
+    return solved;
+}
+
+/// Take over p' with mean zero in the liquid, cut to the limit; a ghost gets the wall's.
+void Liquid::take_pressure(AdvanceReport& report) {
+    Real mean = 0, change = 0;
+    for (std::size_t k = 0; k < particle_.size(); ++k)
+        if (kind_[particle_[k]] == Kind::liquid) mean += solution_[k];
+    mean /= static_cast<Real>(liquid_count_);
+    const Real scale = density_ * drive_.bulk_velocity * drive_.bulk_velocity;
+    const Real limit = flow_ == Flow::turbulent && scale > 0
+                           ? numerics_.pressure_limit * scale
+                           : std::numeric_limits<Real>::infinity();
+    for (std::size_t k = 0; k < particle_.size(); ++k) {
+        const std::size_t i = particle_[k];
+        const Real p = std::clamp(solution_[k] - mean, -limit, limit);
+        if (kind_[i] == Kind::liquid) {
+            report.clamped += p != solution_[k] - mean;
+            change += (p - pressure_[i]) * (p - pressure_[i]);
+        }
+        pressure_[i] = p;
+    }
+    pressure_noise_ = std::sqrt(change / static_cast<Real>(liquid_count_));
+    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
+        if (kind_[i] != Kind::ghost) return;
+        Real sum = 0, weights = 0;
+        neighbors_.each(i, [&](Index j, const Vec3& r) {
+            if (kind_[j] != Kind::wall) return;
+            const Real w = reference_.weight(norm(r));
+            sum += w * pressure_[j];
+            weights += w;
+        });
+        pressure_[i] = weights > 0 ? sum / weights : 0;
+    });
+}
+
+/// Matrix and right-hand side over liquid and wall particles.
+void Liquid::assemble(Real dt) {
+    const std::size_t n = size();
+    const int threads = numerics_.threads;
+    unknown_.resize(n);
+    particle_.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+        unknown_[i] = kind_[i] == Kind::ghost ? none : static_cast<Index>(particle_.size());
+        if (kind_[i] != Kind::ghost) particle_.push_back(static_cast<Index>(i));
+    }
+    const std::size_t unknowns = particle_.size();
+    row_.assign(unknowns + 1, 0);
+    parallel_for(unknowns, threads, [&](std::size_t k) {
+        Index count = 0;
+        neighbors_.each(particle_[k], [&](Index j, const Vec3&) { count += unknown_[j] != none; });
+        row_[k + 1] = count;
+    });
+    std::partial_sum(row_.begin(), row_.end(), row_.begin());
+    column_.resize(row_.back());
+    weight_.resize(row_.back());
+    scalar_.resize(n);
+    slip_divergence(wall_, reference_, neighbors_, kind_, velocity_, threads, scalar_);
+    const Real scale =
+        -density_ / dt * reference_.number_density * reference_.lambda / (2 * dimensions);
+    right_hand_side_.resize(unknowns);
+    solution_.resize(unknowns);
+    unknown_position_.resize(unknowns);
+    parallel_for(unknowns, threads, [&](std::size_t k) {
+        const std::size_t i = particle_[k];
+        Index at = row_[k];
+        neighbors_.each(i, [&](Index j, const Vec3& r) {
+            if (unknown_[j] == none) return;
+            column_[at] = unknown_[j];
+            weight_[at++] = static_cast<float>(reference_.weight(norm(r)));
+        });
+        right_hand_side_[k] = kind_[i] == Kind::liquid ? scale * scalar_[i] : 0;
+        solution_[k] = pressure_[i];
+        unknown_position_[k] = neighbors_.position(i);
+    });
+    remove_axial_bias();
+}
+
+/// The disorder of the particles leaves in the source a random axial wave, which the solve would
+/// amplify with the length of the pipe. In a full rigid pipe the flux through every section is the
+/// same: the source's mean over each diameter of length is zero, and is made so.
+void Liquid::remove_axial_bias() {
+    const auto bins = std::max<std::size_t>(
+        1, static_cast<std::size_t>(std::lround(pipe_length_ / (2 * pipe_radius_))));
+    const Real width = pipe_length_ / static_cast<Real>(bins);
+    std::vector<Real> sum(bins), count(bins);
+    for (std::size_t k = 0; k < particle_.size(); ++k) {
+        if (kind_[particle_[k]] != Kind::liquid) continue;
+        const auto b = std::min(static_cast<std::size_t>(unknown_position_[k].x / width), bins - 1);
+        sum[b] += right_hand_side_[k];
+        count[b] += 1;
+    }
+    for (std::size_t b = 0; b < bins; ++b) sum[b] /= std::max(count[b], 1.);
+    parallel_for(particle_.size(), numerics_.threads, [&](std::size_t k) {
+        if (kind_[particle_[k]] != Kind::liquid) return;
+        const Real place = unknown_position_[k].x / width - 0.5;
+        const Real below = std::floor(place);
+        const auto b = static_cast<std::size_t>(below + static_cast<Real>(bins)) % bins;
+        const Real share = place - below;
+        right_hand_side_[k] -= (1 - share) * sum[b] + share * sum[(b + 1) % bins];
+    });
+}
+
+/// Gradient of p', then the mean axial gradient: given, or what holds the bulk velocity.
+void Liquid::correct(Real dt) {
+    const Real scale = density_ * drive_.bulk_velocity * drive_.bulk_velocity;
+    background_gradient(numerics_.background * scale, wall_, reference_, neighbors_, kind_,
+                        pressure_, numerics_.threads, acceleration_);
+    Real sum = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (kind_[i] != Kind::liquid) continue;
+        velocity_[i] -= (dt / density_) * acceleration_[i];
+        sum += velocity_[i].x;
+    }
+    const Real bulk = sum / static_cast<Real>(liquid_count_);
+    gradient_ = drive_.pressure_gradient ? *drive_.pressure_gradient
+                                         : density_ * (drive_.bulk_velocity - bulk) / dt;
+    const Real kick = dt * gradient_ / density_;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) velocity_[i].x += kick;
+}
+
+void Liquid::move(Real dt, AdvanceReport& report) {
+    const Real dx = numerics_.particle_spacing;
+    const Real scale = -numerics_.shift * dx * dx * dimensions / reference_.number_density;
+    const Real longest = 0.1 * dx;
+    shift_.resize(size());
+    density_number_.resize(size());
+    number_density(reference_.weight, neighbors_, numerics_.threads, density_number_);
+    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
+        Vec3 sum;
+        if (kind_[i] == Kind::liquid) {
+            neighbors_.each(i, [&](Index, const Vec3& r) {
+                sum += reference_.weight.over_square(dot(r, r)) * r;
+            });
+        }
+        sum = scale * sum;
+        const Real length = norm(sum);
+        shift_[i] = length > longest ? (longest / length) * sum : sum;
+    });
+    const Real farthest = pipe_radius_ - nearest * dx;
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (kind_[i] != Kind::liquid) continue;
+        Vec3 x = neighbors_.position(i) + dt * velocity_[i] + shift_[i];
+        const Real r = std::hypot(x.y, x.z);
+        if (r > farthest) {
+            x.y *= farthest / r;
+            x.z *= farthest / r;
+            ++report.held_back;
+        }
+        x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
+        position_[i] = x.x < pipe_length_ ? x : Vec3{0, x.y, x.z};
+        report.sound = report.sound && std::isfinite(dot(velocity_[i], velocity_[i])) &&
+                       std::isfinite(dot(x, x));
+    }
+}
+
+std::vector<Vec3> Liquid::velocity_at(std::span<const Vec3> points, Real radius) const {
+    neighbors::CellGrid grid(radius, pipe_length_);
+    std::vector<Vec3> all(points.begin(), points.end());
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) all.push_back(position_[i]);
+    std::vector<Vec3> velocity(points.size());
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) velocity.push_back(velocity_[i]);
+    std::vector<Index> order;
+    grid.sort(all, order);
+    std::vector<Vec3> result(points.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (order[k] >= points.size()) continue;
+        const Vec3 x = all[order[k]];
+        Vec3 sum;
+        Real weights = 0;
+        grid.around(grid.cell(k), [&](Index begin, Index end, int image) {
+            for (Index m = begin; m < end; ++m) {
+                if (order[m] < points.size()) continue;
+                const Vec3 r = x - all[order[m]] + Vec3{image * pipe_length_, 0, 0};
+                const Real q = norm(r) / radius;
+                if (q >= 1) continue;
+                const Real w = 1 + (4 * q - 5) * q * q * q * q; // W_s
+                sum += w * velocity[order[m]];
+                weights += w;
+            }
+        });
+        result[order[k]] = weights > 0 ? (1 / weights) * sum : Vec3{};
+    }
+    return result;
+}
+
+namespace {
+
+template <class T>
+std::vector<T> in_given_order(const std::vector<T>& values, const std::vector<Index>& id) {
+    std::vector<T> out(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) out[id[i]] = values[i];
+    return out;
+}
+
+} // namespace
+
+std::vector<Vec3> Liquid::position() const {
+    return in_given_order(position_, id_);
+}
+std::vector<Vec3> Liquid::velocity() const {
+    return in_given_order(velocity_, id_);
+}
+std::vector<Kind> Liquid::kind() const {
+    return in_given_order(kind_, id_);
+}
+std::vector<Real> Liquid::pressure() const {
+    return in_given_order(pressure_, id_);
+}
+
+Real Liquid::bulk_velocity() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) sum += velocity_[i].x;
+    return sum / static_cast<Real>(liquid_count_);
+}
+
+Real Liquid::kinetic_energy() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) sum += dot(velocity_[i], velocity_[i]) / 2;
+    return sum / static_cast<Real>(liquid_count_);
+}
+
+std::vector<Real> Liquid::density_ratio() const {
+    if (density_number_.empty()) return std::vector<Real>(size(), 1);
+    Real mean = 0;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) mean += density_number_[i];
+    mean /= static_cast<Real>(liquid_count_);
+    std::vector<Real> ratio = in_given_order(density_number_, id_);
+    for (Real& r : ratio) r /= mean;
+    return ratio;
+}
+
+Real Liquid::density_scatter() const {
+    const std::vector<Real> ratio = density_ratio();
+    Real sum = 0;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) sum += (ratio[id_[i]] - 1) * (ratio[id_[i]] - 1);
+    return std::sqrt(sum / static_cast<Real>(liquid_count_));
+}
+
+Liquid::Snapshot Liquid::snapshot() const {
+    Snapshot out{position_, velocity_, pressure_, {}, id_};
+    for (const Kind k : kind_) out.kind.push_back(static_cast<std::int8_t>(k));
+    return out;
+}
+
+void Liquid::restore(const Snapshot& s) {
+    require(s.position.size() == size() && s.velocity.size() == size() &&
+                s.pressure.size() == size() && s.kind.size() == size() && s.id.size() == size(),
+            "restore: the snapshot belongs to another liquid");
+    position_ = s.position;
+    velocity_ = s.velocity;
+    pressure_ = s.pressure;
+    id_ = s.id;
+    for (std::size_t i = 0; i < size(); ++i) kind_[i] = static_cast<Kind>(s.kind[i]);
+    preconditioner_.reset();
+}
+
+} // namespace mpsdem::mps::lagrangian
