@@ -67,7 +67,7 @@ inline void find_touching(const Population& p, InnerPairs& pairs, std::size_t be
         std::uint8_t& touched = pairs.touched[slot / lane_count];
         if ((touched & ~touching) != 0)
             for (std::size_t k = 0; k < lane_count; ++k)
-                if ((touched & ~touching) >> k & 1u) pairs.set_history(slot + k, {});
+                if (((touched & ~touching) >> k & 1u) != 0) pairs.set_history(slot + k, {});
         touched = static_cast<std::uint8_t>(touching);
         found.add(slot, touching);
     }
@@ -165,7 +165,7 @@ inline void apply_incoming(Population& p, const std::vector<Block>& blocks,
     using P = Population;
     for (const auto [source, slot] : block.incoming) {
         const Block& from = blocks[source];
-        const Real* const note = from.cross.data() + 8 * slot;
+        const Real* const note = from.cross.data() + std::size_t{8} * slot;
         Real* const j = p.values() + from.inner.second[from.inner.cross_begin + slot];
         store(j + P::FX, load(j + P::FX) + load(note));
         store(j + P::TX, load(j + P::TX) + load(note + 4));

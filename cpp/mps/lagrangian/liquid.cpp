@@ -223,7 +223,7 @@ void Liquid::take_pressure(AdvanceReport& report) {
         const std::size_t i = particle_[k];
         const Real p = std::clamp(solution_[k] - mean, -limit, limit);
         if (kind_[i] == Kind::liquid) {
-            report.clamped += p != solution_[k] - mean;
+            if (p != solution_[k] - mean) ++report.clamped;
             change += (p - pressure_[i]) * (p - pressure_[i]);
         }
         pressure_[i] = p;
