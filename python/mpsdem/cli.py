@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -50,6 +51,9 @@ Settings = Annotated[
 
 def main() -> None:
     """Entry point of the command `mpsdem`."""
+    # Threads that wait by spinning cost a busy machine many times what they gain. Read when the
+    # compiled core is loaded, which is later.
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     app(prog_name="mpsdem")
 
 
