@@ -59,7 +59,7 @@ Array<Real> apply_preconditioner(P& preconditioner, const Array<Real>& residual,
     require(r.size() == preconditioner.size(),
             "residual must have one value per row of the matrix");
     std::vector<Real> z(r.size());
-    preconditioner.apply(r, z, threads);
+    std::ignore = preconditioner.apply(r, z, threads);
     return array(z);
 }
 
@@ -335,7 +335,7 @@ right_hand_side : (n,) float64 ndarray
     b. Its mean over each floating cluster is taken off.
 preconditioner : Jacobi, TwoLevelAdditive or TwoLevelDeflation
 tolerance : float
-    Largest residual over the size of b [-]; 1e-12 is about the least that can be reached.
+    Largest residual over the size of b [-], >= 1e-13.
 max_iterations : int
 start : (n,) float64 ndarray, optional
     First guess; zero if not given.

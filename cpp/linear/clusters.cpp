@@ -15,10 +15,9 @@ Clusters::Clusters(const LaplacianMatrix& matrix) {
     // symmetric, the edges that are missing then start from an unknown outside that set: few rows
     // are read whole.
     for (Index i = 0; i < n; ++i) {
-        if (matrix.row()[i] < matrix.row()[i + 1]) join(i, matrix.row()[i]);
-    }
-    for (Index i = 0; i < n; ++i) {
-        if (matrix.row()[i] < matrix.row()[i + 1]) join(i, matrix.row()[i + 1] - 1);
+        if (matrix.row()[i] == matrix.row()[i + 1]) continue;
+        join(i, matrix.row()[i]);
+        join(i, matrix.row()[i + 1] - 1);
     }
     std::vector<Index> size(n, 0);
     for (Index i = 0; i < n; ++i) ++size[sets.find(i)];

@@ -36,15 +36,22 @@ void pin_floating_sets(const LaplacianMatrix& matrix, const CoarseSpace& space,
     }
 }
 
+/// Add the off-diagonal entries of A in one row to the columns of their cells.
+void add_row(const LaplacianMatrix& matrix, std::span<const Index> cell, Index i, SparseSum& sum) {
+    const Index* const column = matrix.column().data();
+    const float* const weight = matrix.weight().data();
+    sum.add(matrix.row()[i], matrix.row()[i + 1], [=](std::size_t k) {
+        return std::pair(cell[column[k]], -static_cast<Real>(weight[k]));
+    });
+}
+
 } // namespace
 
 SparseRows<float> times_indicators(const LaplacianMatrix& matrix, const CoarseSpace& space,
                                    int threads) {
     const auto cell = space.cell();
     return sum_rows<float>(matrix.size(), space.size() + 1, threads, [&](Index i, SparseSum& sum) {
-        for (std::size_t k = matrix.row()[i]; k < matrix.row()[i + 1]; ++k) {
-            sum.add(cell[matrix.column()[k]], -static_cast<Real>(matrix.weight()[k]));
-        }
+        add_row(matrix, cell, i, sum);
         sum.balance(cell[i], matrix.dirichlet(i));
     });
 }
@@ -54,11 +61,7 @@ SparseRows<Real> coarse_matrix(const LaplacianMatrix& matrix, const CoarseSpace&
     const auto cell = space.cell();
     auto coarse =
         sum_rows<Real>(space.size(), space.size() + 1, threads, [&](Index c, SparseSum& sum) {
-            for (const Index i : space.members(c)) {
-                for (std::size_t k = matrix.row()[i]; k < matrix.row()[i + 1]; ++k) {
-                    sum.add(cell[matrix.column()[k]], -static_cast<Real>(matrix.weight()[k]));
-                }
-            }
+            for (const Index i : space.members(c)) add_row(matrix, cell, i, sum);
             sum.balance(c, dirichlet(matrix, space.members(c)));
         });
     pin_floating_sets(matrix, space, coarse);
@@ -70,9 +73,9 @@ SparseRows<Real> coarse_matrix(const LaplacianMatrix& matrix, const CoarseSpace&
     auto coarse =
         sum_rows<Real>(space.size(), space.size() + 1, threads, [&](Index c, SparseSum& sum) {
             for (const Index i : space.members(c)) {
-                for (std::size_t k = touched.start[i]; k < touched.start[i + 1]; ++k) {
-                    sum.add(touched.column[k], touched.value[k]);
-                }
+                sum.add(touched.start[i], touched.start[i + 1], [&](std::size_t k) {
+                    return std::pair(touched.column[k], touched.value[k]);
+                });
             }
             sum.balance(c, dirichlet(matrix, space.members(c)));
         });

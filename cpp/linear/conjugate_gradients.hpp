@@ -7,14 +7,14 @@
 
 namespace mpsdem::linear {
 
-/// Applied once an iteration, z = M^-1 r, and once before them: `start` may move the first guess x
-/// of A x = b to where the preconditioner needs it.
+/// Applied once an iteration: z = M^-1 r, returning the dot product of r and z. Once before them,
+/// `start` may move the first guess x of A x = b to where the preconditioner needs it.
 template <class P>
 concept Preconditioner = requires(P& m, const P& constant, const LaplacianMatrix& a,
                                   std::span<const Real> r, std::span<Real> z, int threads) {
     { constant.size() } -> std::same_as<std::size_t>;
     m.start(a, r, z, threads);
-    { m.apply(r, z, threads) } noexcept;
+    { m.apply(r, z, threads) } noexcept -> std::same_as<Real>;
 };
 
 enum class Outcome {
@@ -29,10 +29,13 @@ struct SolveReport {
     Real residual; // [-] |b - A x| / |b|, as the recursion has it
 };
 
+/// [-] Below, what rounding has left of constants in the residual of a floating cluster would grow.
+inline constexpr Real least_tolerance = 1e-13;
+
 /// Preconditioned conjugate gradients for A x = b, from the first guess in x.
 ///
 /// Where no Dirichlet part holds a cluster, A x = b is solved for b less its mean there, and x has
-/// mean zero there: the constants are projected out of the right-hand side and of every direction.
+/// mean zero there: the constants, to which A is blind, are projected out of b and out of x.
 /// The recursion's residual and the true one part near 1e-12.
 template <Preconditioner P>
 SolveReport conjugate_gradients(const LaplacianMatrix& a, const Clusters& clusters, P& m,
@@ -41,7 +44,8 @@ SolveReport conjugate_gradients(const LaplacianMatrix& a, const Clusters& cluste
     require(right_hand_side.size() == a.size() && x.size() == a.size() && m.size() == a.size(),
             "conjugate_gradients: right_hand_side, start and preconditioner must have one value "
             "per row of the matrix");
-    require(tolerance > 0, "conjugate_gradients: tolerance must be > 0");
+    require(tolerance >= least_tolerance,
+            "conjugate_gradients: tolerance must be >= 1e-13, below which round-off rules");
     require(max_iterations >= 0, "conjugate_gradients: max_iterations must be >= 0");
     constexpr Real round_off = 1e-14; // [-] of the right-hand side, left over from its mean
 
@@ -55,34 +59,33 @@ SolveReport conjugate_gradients(const LaplacianMatrix& a, const Clusters& cluste
         return {Outcome::converged, 0, 0};
     }
 
-    m.start(a, b, x, threads);
     clusters.remove_means(x, threads);
+    m.start(a, b, x, threads);
     std::vector<Real> r(a.size()), p(a.size(), 0), z(a.size());
+    const std::span<Real> q = z; // A p takes the place of z once p is made of it
     Real residual = std::sqrt(a.residual(b, x, r, threads)) / size;
     Real before = 1; // r.z of the iteration before
     for (int iteration = 0;; ++iteration) {
-        if (!std::isfinite(residual)) return {Outcome::broken, iteration, residual};
-        if (residual <= tolerance) return {Outcome::converged, iteration, residual};
-        if (iteration == max_iterations) return {Outcome::exhausted, iteration, residual};
+        const auto end = [&](Outcome outcome) {
+            clusters.remove_means(x, threads);
+            return SolveReport{outcome, iteration, residual};
+        };
+        if (!std::isfinite(residual)) return end(Outcome::broken);
+        if (residual <= tolerance) return end(Outcome::converged);
+        if (iteration == max_iterations) return end(Outcome::exhausted);
 
-        m.apply(r, z, threads);
-        clusters.remove_means(z, threads);
-        const Real now = dot(r, z, threads);
+        const Real now = m.apply(r, z, threads);
         const Real turn = now / before;
         parallel_for(a.size(), threads, [&](std::size_t i) { p[i] = z[i] + turn * p[i]; });
-        const std::span<Real> q = z; // A p takes the place of z, which is not needed any more
         const Real energy = a.apply(p, q, threads);
         const Real step = now / energy;
-        if (!(now > 0 && energy > 0 && std::isfinite(step))) {
-            return {Outcome::broken, iteration, residual};
-        }
-        residual = std::sqrt(ordered_sum(a.size(), threads,
-                                         [&](std::size_t i) {
-                                             x[i] += step * p[i];
-                                             r[i] -= step * q[i];
-                                             return r[i] * r[i];
-                                         })) /
-                   size;
+        if (!(now > 0 && energy > 0 && std::isfinite(step))) return end(Outcome::broken);
+        const auto advance = [&](std::size_t i) {
+            x[i] += step * p[i];
+            r[i] -= step * q[i];
+            return r[i] * r[i];
+        };
+        residual = std::sqrt(ordered_sum(a.size(), threads, advance)) / size;
         before = now;
     }
 }

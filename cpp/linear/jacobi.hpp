@@ -18,8 +18,11 @@ public:
 
     void start(const LaplacianMatrix&, std::span<const Real>, std::span<Real>, int) {}
 
-    void apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {
-        parallel_for(size(), threads, [&](std::size_t i) { z[i] = inverse_[i] * r[i]; });
+    [[nodiscard]] Real apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {
+        return ordered_sum(size(), threads, [&](std::size_t i) {
+            z[i] = inverse_[i] * r[i];
+            return r[i] * z[i];
+        });
     }
 
 private:

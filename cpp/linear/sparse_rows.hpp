@@ -4,6 +4,7 @@
 #include "core/vec3.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace mpsdem::linear {
@@ -21,42 +22,57 @@ struct SparseRows {
 /// A sparse row while it is summed up.
 class SparseSum {
 public:
-    explicit SparseSum(std::size_t columns) : value_(columns), row_of_(columns, 0) {}
+    explicit SparseSum(std::size_t columns) : slot_(columns), met_(columns) {}
 
-    void add(Index column, Real value) {
-        if (row_of_[column] != row_) {
-            row_of_[column] = row_;
-            value_[column] = 0;
-            met_.push_back(column);
+    /// Add entry(k), a column and a value, for k in [first, last).
+    template <class Entry>
+    void add(std::size_t first, std::size_t last, const Entry& entry) {
+        Slot* const slots = slot_.data(); // no member is touched in the loop, which is long
+        Index* const met = met_.data();
+        const Index row = row_;
+        std::size_t count = count_;
+        for (std::size_t k = first; k < last; ++k) {
+            const auto [column, value] = entry(k);
+            Slot& slot = slots[column];
+            if (slot.row != row) {
+                slot = {0, row};
+                met[count++] = column;
+            }
+            slot.value += value;
         }
-        value_[column] += value;
+        count_ = count;
     }
 
     /// Set one value so that the row sums to `total`.
     void balance(Index column, Real total) {
-        add(column, 0);
-        for (const Index other : met_) {
-            if (other != column) total -= value_[other];
+        add(0, 1, [&](std::size_t) { return std::pair(column, Real{0}); });
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (met_[k] != column) total -= slot_[met_[k]].value;
         }
-        value_[column] = total;
+        slot_[column].value = total;
     }
 
     /// Append what was summed to a matrix, and begin the next row.
     template <class Value>
     void finish(SparseRows<Value>& rows) {
-        for (const Index column : met_) {
-            rows.column.push_back(column);
-            rows.value.push_back(static_cast<Value>(value_[column]));
+        for (std::size_t k = 0; k < count_; ++k) {
+            rows.column.push_back(met_[k]);
+            rows.value.push_back(static_cast<Value>(slot_[met_[k]].value));
         }
         rows.start.push_back(static_cast<Index>(rows.column.size()));
-        met_.clear();
+        count_ = 0;
         ++row_;
     }
 
 private:
-    std::vector<Real> value_;
-    std::vector<Index> row_of_; // where a column was last met
-    std::vector<Index> met_;
+    struct Slot {
+        Real value = 0;
+        Index row = 0; // in which the column was last met
+    };
+
+    std::vector<Slot> slot_;
+    std::vector<Index> met_; // the first count_ are columns of this row
+    std::size_t count_ = 0;
     Index row_ = 1;
 };
 

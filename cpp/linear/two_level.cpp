@@ -34,14 +34,16 @@ void TwoLevelAdditive::follow(const LaplacianMatrix& matrix, std::span<const Vec
     space_.assign(position);
 }
 
-void TwoLevelAdditive::apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {
+Real TwoLevelAdditive::apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {
     parallel_for(space_.size(), threads,
                  [&](std::size_t c) { coarse_[c] = sum_over(space_.members(c), r); });
     factor_.solve(std::span(coarse_).first(space_.size()));
     const auto inverse = jacobi_.inverse_diagonal();
     const auto cell = space_.cell();
-    parallel_for(size(), threads,
-                 [&](std::size_t i) { z[i] = inverse[i] * r[i] + coarse_[cell[i]]; });
+    return ordered_sum(size(), threads, [&](std::size_t i) {
+        z[i] = inverse[i] * r[i] + coarse_[cell[i]];
+        return r[i] * z[i];
+    });
 }
 
 TwoLevelDeflation::TwoLevelDeflation(const LaplacianMatrix& matrix, const Cloud& cloud, int threads)
@@ -62,8 +64,8 @@ void TwoLevelDeflation::start(const LaplacianMatrix& matrix, std::span<const Rea
     parallel_for(size(), threads, [&](std::size_t i) { x[i] += coarse_[cell[i]]; });
 }
 
-void TwoLevelDeflation::apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {
-    jacobi_.apply(r, z, threads);
+Real TwoLevelDeflation::apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {
+    std::ignore = jacobi_.apply(r, z, threads);
     parallel_for(space_.size(), threads, [&](std::size_t c) {
         Real sum = sum_over(space_.members(c), r);
         for (std::size_t k = touching_.start[c]; k < touching_.start[c + 1]; ++k) {
@@ -73,7 +75,10 @@ void TwoLevelDeflation::apply(std::span<const Real> r, std::span<Real> z, int th
     });
     factor_.solve(std::span(coarse_).first(space_.size()));
     const auto cell = space_.cell();
-    parallel_for(size(), threads, [&](std::size_t i) { z[i] += coarse_[cell[i]]; });
+    return ordered_sum(size(), threads, [&](std::size_t i) {
+        z[i] += coarse_[cell[i]];
+        return r[i] * z[i];
+    });
 }
 
 } // namespace mpsdem::linear

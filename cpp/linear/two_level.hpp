@@ -30,7 +30,7 @@ public:
     [[nodiscard]] std::size_t coarse_size() const noexcept { return space_.size(); }
 
     void start(const LaplacianMatrix&, std::span<const Real>, std::span<Real>, int) {}
-    void apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept;
+    [[nodiscard]] Real apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept;
 
 private:
     Jacobi jacobi_;
@@ -56,7 +56,7 @@ public:
 
     void start(const LaplacianMatrix& matrix, std::span<const Real> b, std::span<Real> x,
                int threads);
-    void apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept;
+    [[nodiscard]] Real apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept;
 
 private:
     Jacobi jacobi_;

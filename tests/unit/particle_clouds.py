@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -72,6 +73,7 @@ def joined(position: NDArray[np.float64], *, spacing: float, period: float = 0.0
     return Cloud.of(position, csr_array(half + half.T), spacing=spacing)
 
 
+@cache
 def pipe(*, spacing: float, diameter: float, length: float, periodic: bool, seed: int = 0) -> Cloud:
     """Fill a pipe with a jittered lattice, its wall layer included."""
     rng = np.random.default_rng(seed)

@@ -301,22 +301,14 @@ def test_nothing_to_solve_takes_no_iteration(name):
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_a_small_residual_is_a_true_one(name):
-    cloud = pipe(spacing=SPACING, diameter=0.2, length=1.0, periodic=True)
-    b = noise(cloud)
-    solution = solve(name, cloud, b, period=1.0, tolerance=1e-12)
+@pytest.mark.parametrize("tolerance", [1e-12, 1e-13])
+def test_a_small_residual_is_a_true_one(name, tolerance):
+    cloud = pipe(spacing=SPACING, diameter=0.2, length=4.0, periodic=True)
+    b = noise(cloud) + 3
+    solution = solve(name, cloud, b, period=4.0, tolerance=tolerance, max_iterations=3000)
     assert solution.converged
     left = b - b.mean() - cloud.matrix() @ solution.x
-    assert np.linalg.norm(left) < 1e-11 * np.linalg.norm(b)
-
-
-@pytest.mark.parametrize("name", METHODS)
-def test_iterating_past_the_floor_does_no_harm(name):
-    cloud = pipe(spacing=SPACING, diameter=0.2, length=1.0, periodic=True)
-    b = noise(cloud)
-    solution = solve(name, cloud, b, period=1.0, tolerance=1e-300, max_iterations=400)
-    left = b - b.mean() - cloud.matrix() @ solution.x
-    assert np.linalg.norm(left) < 1e-11 * np.linalg.norm(b)
+    assert np.linalg.norm(left) < 3e-12 * np.linalg.norm(b)
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -342,11 +334,14 @@ def test_the_solution_as_start_takes_no_iteration_and_a_near_one_few(name):
     assert relative(near.x, cold.x) < 1e-8
 
 
-def test_a_start_with_another_constant_gives_the_same_solution():
+@pytest.mark.parametrize("name", METHODS)
+def test_a_constant_in_the_start_does_not_matter(name):
     cloud = blob()
     b = noise(cloud)
-    cold = solve("additive", cloud, b)
-    assert relative(solve("additive", cloud, b, start=cold.x + 7).x, cold.x) < 1e-8
+    cold = solve(name, cloud, b)
+    again = solve(name, cloud, b, start=cold.x + 1e5, tolerance=1e-8)
+    assert again.iterations == 0
+    assert relative(again.x, cold.x) < 1e-8
 
 
 def test_too_few_iterations_are_reported_as_neither_converged_nor_broken():
@@ -450,8 +445,11 @@ def test_bad_calls_name_the_argument():
         linear.conjugate_gradients(matrix, np.ones(5), preconditioner=jacobi)
     with pytest.raises(ValueError, match="start"):
         linear.conjugate_gradients(matrix, np.ones(300), preconditioner=jacobi, start=np.ones(5))
-    with pytest.raises(ValueError, match="tolerance must be > 0"):
-        linear.conjugate_gradients(matrix, np.ones(300), preconditioner=jacobi, tolerance=0)
+    for tolerance in (0, 1e-14, np.nan):
+        with pytest.raises(ValueError, match="tolerance must be >= 1e-13"):
+            linear.conjugate_gradients(
+                matrix, np.ones(300), preconditioner=jacobi, tolerance=tolerance
+            )
     with pytest.raises(TypeError):
         linear.conjugate_gradients(matrix, np.ones(300), preconditioner=None)
     with pytest.raises(ValueError, match="position must have one row"):

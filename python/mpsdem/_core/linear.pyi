@@ -295,7 +295,7 @@ def conjugate_gradients(matrix: LaplacianMatrix, right_hand_side: typing.Annotat
         b. Its mean over each floating cluster is taken off.
     preconditioner : Jacobi, TwoLevelAdditive or TwoLevelDeflation
     tolerance : float
-        Largest residual over the size of b [-]; 1e-12 is about the least that can be reached.
+        Largest residual over the size of b [-], >= 1e-13.
     max_iterations : int
     start : (n,) float64 ndarray, optional
         First guess; zero if not given.
