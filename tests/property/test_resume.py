@@ -80,7 +80,8 @@ def contents(results):
 
     def note(name, item):
         if isinstance(item, h5py.Dataset):
-            found[name] = np.asarray(item[()]).tolist()
+            value = np.asarray(item[()])
+            found[name] = value.tolist() if value.dtype.hasobject else value.tobytes()
 
     with h5py.File(results.directory / "results.h5", locking=False) as file:
         file.visititems(note)
@@ -106,4 +107,6 @@ def test_a_resumed_run_equals_one_that_was_never_stopped(undisturbed, stops):
                 simulation.run().close()
             simulation = Simulation.resume(directory)
         with simulation.run() as results:
-            assert contents(results) == whole
+            found = contents(results)
+        assert found.keys() == whole.keys()
+        assert [name for name in whole if found[name] != whole[name]] == []
