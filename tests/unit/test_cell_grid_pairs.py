@@ -111,6 +111,53 @@ def test_all_touching_pairs_are_found_as_the_solids_move(period):
     assert sorts > 5
 
 
+def test_pairs_that_close_as_fast_as_any_two_can_are_found_at_once():
+    """All at one speed, head-on, from all distances: lists may last not a step too long."""
+    rng = np.random.default_rng(8)
+    gap = np.linspace(0.0, 0.8, 60)
+    left = np.column_stack([0 * gap, 4.0 * np.arange(60), 0 * gap])
+    start = scene(
+        np.concatenate([left, left + np.column_stack([2 + gap, 0 * gap, 0 * gap])]),
+        np.repeat([[1.0, 0, 0], [-1.0, 0, 0]], 60, axis=0),
+        radius=1.0,
+        density=1e6,
+        **FLOATING,
+    )
+    for dt in (1e-3, 7e-3, 3e-2):
+        solids, counts = start.solids(), []
+        for _ in range(round(0.3 / dt)):
+            solids.advance(dt * rng.uniform(0.5, 1.0), 1)
+            counts.append(assert_all_found(solids, 0.0))
+        assert counts[-1] > 20
+
+
+@pytest.mark.parametrize("wind", [-1.0, -0.5, 0.0, 1.0, 20.0])
+def test_solids_that_near_walls_as_fast_as_they_can_are_found_at_once(wind):
+    """Walls on both sides, and a mean velocity that lists of pairs do not care for."""
+    gap = np.linspace(0.0, 0.8, 60)
+    low = np.column_stack([0 * gap, 4.0 * np.arange(60), 1.0 + gap])
+    high = low * [1, 1, -1] + [0, 2, 40.0]
+    start = scene(
+        np.concatenate([low, high]),
+        np.repeat([[0, 0, wind - 1], [0, 0, wind + 1]], 60, axis=0),
+        radius=1.0,
+        density=1e6,
+        walls=[Flat(), Flat(point=(0, 0, 40), normal=(0, 0, -1))],
+        **FLOATING,
+    )
+    for dt in (1e-3, 7e-3):
+        solids = start.solids()
+        for _ in range(round(0.3 / dt)):
+            solids.advance(dt, 1)
+            height = solids.position[:, 2]
+            contacts = solids.contacts()
+            found = set(contacts["first"][contacts["second"] < 0].tolist())
+            forced = np.abs(solids.velocity[:, 2] - start.velocity[:, 2]) > 0
+            assert found == set(np.flatnonzero((height < 1) | (height > 39)).tolist())
+            # one that touched has felt it
+            assert found <= set(np.flatnonzero(forced).tolist())
+
+
 def test_all_touching_pairs_are_found_across_blocks():
     """More solids than one block holds, listed in no order; SciPy's tree as the oracle."""
     rng = np.random.default_rng(3)
