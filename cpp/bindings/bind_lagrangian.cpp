@@ -1,4 +1,5 @@
 #include "bindings/array.hpp"
+#include "coupling/sample_velocity.hpp"
 #include "mps/lagrangian/liquid.hpp"
 
 #include <pybind11/pybind11.h>
@@ -36,7 +37,16 @@ void bind_lagrangian(py::module_ m) {
                       "Largest residual of the pressure equation, relative [-].")
         .def_readonly("mean_gradient", &AdvanceReport::mean_gradient,
                       "Loss of pressure along the pipe, mean over the call [Pa/m].")
+        .def_readonly("friction", &AdvanceReport::friction,
+                      "What walls and viscosity take up, mean over the call [Pa/m].")
+        .def_readonly("unexplained", &AdvanceReport::unexplained,
+                      "What p' does to the axial momentum, and must not, mean [Pa/m].")
         .def_readonly("clamped", &AdvanceReport::clamped, "Pressures cut to the limit.")
+        .def_readonly("viscosity_capped", &AdvanceReport::viscosity_capped,
+                      "Eddy viscosities cut to what the step can bear.")
+        .def_readonly("shifts_cut", &AdvanceReport::shifts_cut, "Shifts cut to their longest.")
+        .def_readonly("deficient", &AdvanceReport::deficient,
+                      "Particles whose neighbors fix no Laplacian: no viscosity acted there.")
         .def_readonly("held_back", &AdvanceReport::held_back,
                       "Particles kept from going nearer to the wall than 0.3 spacings.")
         .def_readonly("solve_seconds", &AdvanceReport::solve_seconds,
@@ -103,9 +113,26 @@ Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
         .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
              "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
         .def(
+            "drive",
+            [](Liquid& liquid, Real bulk_velocity, std::optional<Real> pressure_gradient) {
+                liquid.drive({bulk_velocity, pressure_gradient});
+            },
+            py::kw_only(), "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
+            R"(Drive the liquid otherwise from now on.
+
+Parameters
+----------
+bulk_velocity : float
+    Held each step unless a gradient is given; scales the pressure limits in any case [m/s].
+pressure_gradient : float, optional
+    Given loss of pressure along the pipe [Pa/m].
+)")
+        .def(
             "velocity_at",
             [](const Liquid& liquid, const Array<Real>& points, Real radius) {
-                return array(liquid.velocity_at(vectors(points, "points"), radius));
+                return array(coupling::sample_velocity(
+                    {radius}, liquid.pipe_length(), liquid.liquid_position(),
+                    liquid.liquid_velocity(), vectors(points, "points")));
             },
             py::kw_only(), "points"_a, "radius"_a,
             R"(Liquid velocity at points, averaged with the kernel W_s over a radius.

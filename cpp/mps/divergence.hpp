@@ -27,6 +27,8 @@ inline void divergence(const ReferenceDensity& reference, const neighbors::Neigh
     });
 }
 
+inline constexpr Real nearest_liquid = 0.3; // [-] spacings from the wall, as near as liquid comes
+
 /// The same with a wall that lets slip: between liquid a and wall or ghost b the difference
 /// u_b - u_a becomes
 ///
@@ -41,7 +43,7 @@ void slip_divergence(const Wall& wall, const ReferenceDensity& reference,
                      const neighbors::NeighborList& neighbors, std::span<const Kind> kind,
                      std::span<const Vec3> velocity, int threads, std::span<Real> result) {
     const Real scale = dimensions / reference.number_density;
-    const Real least = 0.3 * reference.spacing; // [m] as near as liquid comes to the wall
+    const Real least = nearest_liquid * reference.spacing;
     const auto mirrored = [&](std::size_t liquid, std::size_t solid) {
         const auto at = wall.at(neighbors.position(liquid));
         const Real depth = -wall.at(neighbors.position(solid)).distance;

@@ -18,6 +18,9 @@ from mpsdem.plan import Plan, clear_gradient, pipe_profile
 FloatArray = NDArray[np.float64]
 Stored = NDArray[Any] | int | float
 
+#: What the particle liquid cuts and counts, by the names of its report and of the results.
+CLIPS = ("clamped", "viscosity_capped", "shifts_cut", "deficient", "held_back")
+
 _PROFILE_POINTS = 101  # radii of the prescribed profile in the results
 _RINGS = 20  # radial bins of the measured profile
 _MOST_WRITTEN = 10_000  # particles of a frame, unless the case says otherwise
@@ -94,7 +97,15 @@ class Tally:
     iterations: int = 0
     residual: float = 0.0
     clamped: int = 0
+    viscosity_capped: int = 0
+    shifts_cut: int = 0
+    deficient: int = 0
     held_back: int = 0
+
+    @property
+    def clips(self) -> dict[str, ArrayLike]:
+        """Counts of all that was cut, by the names of the results."""
+        return {name: getattr(self, name) for name in CLIPS}
 
 
 @dataclass(slots=True, kw_only=True)
@@ -132,9 +143,16 @@ class ParticleLiquid:
         tally.substeps += report.substeps
         tally.iterations += report.iterations
         tally.residual = max(tally.residual, report.residual)
-        tally.clamped += report.clamped
-        tally.held_back += report.held_back
+        for name in CLIPS:
+            setattr(tally, name, getattr(tally, name) + getattr(report, name))
         self.sound = report.sound
+
+    @property
+    def count_in_bore(self) -> int:
+        """Liquid particles that are where liquid can be."""
+        x = self.particles.position[self.kind == Kind.LIQUID]
+        inside = np.hypot(x[:, 1], x[:, 2]) < self.pipe_radius
+        return int((inside & (x[:, 0] >= 0) & (x[:, 0] < self.pipe_length)).sum())
 
     def velocity_at(self, position: FloatArray) -> FloatArray:
         velocity: FloatArray = self.particles.velocity_at(
@@ -188,8 +206,7 @@ class ParticleLiquid:
             "density_scatter": particles.density_scatter,
             "pressure_noise": particles.pressure_noise,
             "liquid_kinetic_energy": particles.kinetic_energy,
-            "clamped": tally.clamped,
-            "held_back": tally.held_back,
+            **tally.clips,
         }
         self.tally = Tally()
         return fields, diagnostics

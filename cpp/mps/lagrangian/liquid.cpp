@@ -20,7 +20,7 @@ namespace mpsdem::mps::lagrangian {
 namespace {
 
 constexpr Real reach = 2.1;          // [-] r_e over the spacing, for every operator
-constexpr Real nearest = 0.3;        // [-] spacings from the wall, as near as liquid may come
+constexpr Real longest_shift = 0.1;  // [-] spacings that a particle may be shifted in a step
 constexpr Real viscous_limit = 0.1;  // [-] largest nu dt / dx^2
 constexpr Real most_substeps = 1e4;  // [-] of one call; beyond it the speeds have run away
 constexpr int most_halvings = 5;     // [-] of one call
@@ -81,6 +81,8 @@ AdvanceReport Liquid::advance(Real dt) {
         left -= length;
         ++report.substeps;
         report.mean_gradient += gradient_ * length / dt;
+        report.friction += friction_ * length / dt;
+        report.unexplained += unexplained_ * length / dt;
     }
     return report;
 }
@@ -99,7 +101,9 @@ bool Liquid::step(Real dt, AdvanceReport& report) {
     sort();
     neighbors_.find(position_, numerics_.threads);
     const std::vector<Vec3> velocity_before = velocity_;
-    predict(dt);
+    const Real before = bulk_velocity();
+    predict(dt, report);
+    friction_ = density_ * (before - bulk_velocity()) / dt;
     assemble(dt);
     if (!solve_pressure(report)) {
         velocity_ = velocity_before;
@@ -122,22 +126,25 @@ void Liquid::sort() {
 }
 
 /// Viscosity and wall shear, on the liquid.
-void Liquid::predict(Real dt) {
+void Liquid::predict(Real dt, AdvanceReport& report) {
     const std::size_t n = size();
     const int threads = numerics_.threads;
     const Real dx = numerics_.particle_spacing;
     acceleration_.resize(n);
     if (flow_ == Flow::laminar) {
-        std::vector<std::uint8_t> deficient(n);
+        deficient_.resize(n);
         least_squares_laplacian<geometry::Cylinder, Vec3>(wall_, neighbors_, kind_, velocity_,
-                                                          threads, acceleration_, deficient);
+                                                          threads, acceleration_, deficient_);
+        report.deficient += static_cast<std::size_t>(std::ranges::count(deficient_, 1));
         for (Vec3& a : acceleration_) a = viscosity_ * a;
     } else {
         scalar_.resize(n);
         eddy_viscosity_.resize(n);
         shear_rate(reference_.weight, neighbors_, kind_, velocity_, threads, scalar_);
-        eddy_viscosity(mixing_length_, position_, scalar_, viscous_limit * dx * dx / dt, threads,
-                       eddy_viscosity_);
+        const Real largest = viscous_limit * dx * dx / dt;
+        eddy_viscosity(mixing_length_, position_, scalar_, largest, threads, eddy_viscosity_);
+        report.viscosity_capped +=
+            static_cast<std::size_t>(std::ranges::count(eddy_viscosity_, largest));
         for (Real& nu : eddy_viscosity_) nu += viscosity_;
         viscous_acceleration(reference_, neighbors_, kind_, eddy_viscosity_, velocity_, threads,
                              acceleration_);
@@ -163,7 +170,7 @@ void Liquid::add_wall_shear() {
         const Real speed = norm(velocity_[i]);
         ++layer;
         if (speed == 0) continue;
-        const Real shear = wall_function_.shear(speed, std::max(distance, nearest * dx));
+        const Real shear = wall_function_.shear(speed, std::max(distance, nearest_liquid * dx));
         scalar_[i] = shear / speed;
         sum += shear * velocity_[i].x / speed;
     }
@@ -314,13 +321,11 @@ void Liquid::correct(Real dt) {
     const Real scale = density_ * drive_.bulk_velocity * drive_.bulk_velocity;
     background_gradient(numerics_.background * scale, wall_, reference_, neighbors_, kind_,
                         pressure_, numerics_.threads, acceleration_);
-    Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
-        if (kind_[i] != Kind::liquid) continue;
-        velocity_[i] -= (dt / density_) * acceleration_[i];
-        sum += velocity_[i].x;
-    }
-    const Real bulk = sum / static_cast<Real>(liquid_count_);
+    const Real before = bulk_velocity();
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) velocity_[i] -= (dt / density_) * acceleration_[i];
+    const Real bulk = bulk_velocity();
+    unexplained_ = density_ * (bulk - before) / dt;
     gradient_ = drive_.pressure_gradient ? *drive_.pressure_gradient
                                          : density_ * (drive_.bulk_velocity - bulk) / dt;
     const Real kick = dt * gradient_ / density_;
@@ -331,7 +336,7 @@ void Liquid::correct(Real dt) {
 void Liquid::move(Real dt, AdvanceReport& report) {
     const Real dx = numerics_.particle_spacing;
     const Real scale = -numerics_.shift * dx * dx * dimensions / reference_.number_density;
-    const Real longest = 0.1 * dx;
+    const Real longest = longest_shift * dx;
     shift_.resize(size());
     density_number_.resize(size());
     number_density(reference_.weight, neighbors_, numerics_.threads, density_number_);
@@ -342,14 +347,15 @@ void Liquid::move(Real dt, AdvanceReport& report) {
                 sum += reference_.weight.over_square(dot(r, r)) * r;
             });
         }
-        sum = scale * sum;
-        const Real length = norm(sum);
-        shift_[i] = length > longest ? (longest / length) * sum : sum;
+        shift_[i] = scale * sum;
     });
-    const Real farthest = pipe_radius_ - nearest * dx;
+    const Real farthest = pipe_radius_ - nearest_liquid * dx;
     for (std::size_t i = 0; i < size(); ++i) {
         if (kind_[i] != Kind::liquid) continue;
-        Vec3 x = neighbors_.position(i) + dt * velocity_[i] + shift_[i];
+        const Real length = norm(shift_[i]);
+        if (length > longest) ++report.shifts_cut;
+        const Vec3 shift = (length > longest ? longest / length : 1) * shift_[i];
+        Vec3 x = neighbors_.position(i) + dt * velocity_[i] + shift;
         const Real r = std::hypot(x.y, x.z);
         if (r > farthest) {
             x.y *= farthest / r;
@@ -363,38 +369,6 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     }
 }
 
-std::vector<Vec3> Liquid::velocity_at(std::span<const Vec3> points, Real radius) const {
-    neighbors::CellGrid grid(radius, pipe_length_);
-    std::vector<Vec3> all(points.begin(), points.end());
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) all.push_back(position_[i]);
-    std::vector<Vec3> velocity(points.size());
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) velocity.push_back(velocity_[i]);
-    std::vector<Index> order;
-    grid.sort(all, order);
-    std::vector<Vec3> result(points.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        if (order[k] >= points.size()) continue;
-        const Vec3 x = all[order[k]];
-        Vec3 sum;
-        Real weights = 0;
-        grid.around(grid.cell(k), [&](Index begin, Index end, int image) {
-            for (Index m = begin; m < end; ++m) {
-                if (order[m] < points.size()) continue;
-                const Vec3 r = x - all[order[m]] + Vec3{image * pipe_length_, 0, 0};
-                const Real q = norm(r) / radius;
-                if (q >= 1) continue;
-                const Real w = 1 + (4 * q - 5) * q * q * q * q; // W_s
-                sum += w * velocity[order[m]];
-                weights += w;
-            }
-        });
-        result[order[k]] = weights > 0 ? (1 / weights) * sum : Vec3{};
-    }
-    return result;
-}
-
 namespace {
 
 template <class T>
@@ -406,6 +380,20 @@ std::vector<T> in_given_order(const std::vector<T>& values, const std::vector<In
 
 } // namespace
 
+std::vector<Vec3> Liquid::of_liquid(const std::vector<Vec3>& values) const {
+    std::vector<Vec3> out;
+    out.reserve(liquid_count_);
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kind_[i] == Kind::liquid) out.push_back(values[i]);
+    return out;
+}
+
+std::vector<Vec3> Liquid::liquid_position() const {
+    return of_liquid(position_);
+}
+std::vector<Vec3> Liquid::liquid_velocity() const {
+    return of_liquid(velocity_);
+}
 std::vector<Vec3> Liquid::position() const {
     return in_given_order(position_, id_);
 }

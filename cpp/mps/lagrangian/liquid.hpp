@@ -38,12 +38,17 @@ struct Numerics {
 /// What a call of Liquid::advance met, over its substeps.
 struct AdvanceReport {
     int substeps = 0;
-    int iterations = 0;        // of the pressure equation, all substeps
-    int retries = 0;           // pressure solves that had to start anew
-    int halvings = 0;          // substeps halved after a failed solve
-    Real residual = 0;         // [-] largest
-    Real mean_gradient = 0;    // [Pa/m] loss of pressure along the pipe, mean over the call
-    std::size_t clamped = 0;   // pressures cut to the limit
+    int iterations = 0;      // of the pressure equation, all substeps
+    int retries = 0;         // pressure solves that had to start anew
+    int halvings = 0;        // substeps halved after a failed solve
+    Real residual = 0;       // [-] largest
+    Real mean_gradient = 0;  // [Pa/m] loss of pressure along the pipe, mean over the call
+    Real friction = 0;       // [Pa/m] that walls and viscosity take up, mean over the call
+    Real unexplained = 0;    // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
+    std::size_t clamped = 0; // pressures cut to the limit
+    std::size_t viscosity_capped = 0; // eddy viscosities cut to what the step can bear
+    std::size_t shifts_cut = 0;       // shifts cut to their longest
+    std::size_t deficient = 0;        // particles whose neighbors fix no Laplacian: no viscosity
     std::size_t held_back = 0; // particles kept from going nearer to the wall than 0.3 spacings
     Real solve_seconds = 0;    // [s] in the pressure equation, set-up included
     bool sound = true;         // false: the pressure could not be solved, or speeds overflowed
@@ -76,8 +81,13 @@ public:
     /// Advance by dt [s], in as many equal substeps as the Courant number and viscosity ask for.
     AdvanceReport advance(Real dt);
 
-    /// Liquid velocity at points [m/s]: mean of the particles within `radius` [m], weighted by W_s.
-    [[nodiscard]] std::vector<Vec3> velocity_at(std::span<const Vec3> points, Real radius) const;
+    /// Drive the liquid otherwise from now on.
+    void drive(const Drive& drive) { drive_ = drive; }
+
+    /// The liquid's own particles, without wall and ghosts, in one order.
+    [[nodiscard]] std::vector<Vec3> liquid_position() const; // [m]
+    [[nodiscard]] std::vector<Vec3> liquid_velocity() const; // [m/s]
+    [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }
 
     [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
     [[nodiscard]] std::size_t liquid_count() const noexcept { return liquid_count_; }
@@ -109,7 +119,8 @@ private:
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report);
     void sort();
-    void predict(Real dt);
+    void predict(Real dt, AdvanceReport& report);
+    [[nodiscard]] std::vector<Vec3> of_liquid(const std::vector<Vec3>& values) const;
     void add_wall_shear();
     [[nodiscard]] bool solve_pressure(AdvanceReport& report);
     void take_pressure(AdvanceReport& report);
@@ -136,6 +147,7 @@ private:
     std::vector<Real> pressure_; // [Pa] p'; of a ghost, its neighbors' on the wall
     std::vector<Index> id_;
 
+    std::vector<std::uint8_t> deficient_;
     std::vector<Vec3> acceleration_, shift_;
     std::vector<Real> scalar_, eddy_viscosity_, density_number_;
     std::vector<Index> unknown_;  // by particle, or none for ghosts
@@ -146,7 +158,7 @@ private:
     std::vector<Vec3> unknown_position_;
     std::optional<linear::TwoLevelAdditive> preconditioner_;
 
-    Real gradient_ = 0, wall_shear_ = 0, pressure_noise_ = 0;
+    Real gradient_ = 0, friction_ = 0, unexplained_ = 0, wall_shear_ = 0, pressure_noise_ = 0;
 };
 
 } // namespace mpsdem::mps::lagrangian

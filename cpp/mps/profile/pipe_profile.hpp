@@ -15,7 +15,7 @@ inline constexpr Real karman = 0.41; // [-] von Karman's constant
 ///   1 / sqrt(f) = -2 log10(e / (3.7 D) + 2.51 / (Re sqrt(f)))
 ///
 /// Source: Colebrook (1939), doi:10.1680/ijoti.1939.13150. `relative_roughness` is e / D, at most
-/// 0.05. Within about 2 % of measurements in smooth pipes from Re 4000; between 2300 and 4000 no
+/// 0.05. Within about 3 % of measurements in smooth pipes from Re 4000; between 2300 and 4000 no
 /// law holds, as the flow is intermittent.
 [[nodiscard]] Real friction_factor(Real reynolds, Real relative_roughness);
 

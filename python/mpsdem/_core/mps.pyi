@@ -213,6 +213,16 @@ class LiquidReport:
         Pressures cut to the limit.
         """
     @property
+    def deficient(self) -> int:
+        """
+        Particles whose neighbors fix no Laplacian: no viscosity acted there.
+        """
+    @property
+    def friction(self) -> float:
+        """
+        What walls and viscosity take up, mean over the call [Pa/m].
+        """
+    @property
     def halvings(self) -> int:
         """
         Steps that were halved after a failed solve.
@@ -243,6 +253,11 @@ class LiquidReport:
         Pressure solves that had to start anew.
         """
     @property
+    def shifts_cut(self) -> int:
+        """
+        Shifts cut to their longest.
+        """
+    @property
     def solve_seconds(self) -> float:
         """
         Time spent in the pressure equation, set-up included [s].
@@ -255,6 +270,16 @@ class LiquidReport:
     @property
     def substeps(self) -> int:
         ...
+    @property
+    def unexplained(self) -> float:
+        """
+        What p' does to the axial momentum, and must not, mean [Pa/m].
+        """
+    @property
+    def viscosity_capped(self) -> int:
+        """
+        Eddy viscosities cut to what the step can bear.
+        """
 class LagrangianLiquid:
     """
     The particle liquid of a full, straight, periodic pipe.
@@ -298,6 +323,17 @@ class LagrangianLiquid:
     def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex) -> LiquidReport:
         """
         Advance by dt [s], in as many substeps as Courant number and viscosity ask for.
+        """
+    def drive(self, *, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None) -> None:
+        """
+        Drive the liquid otherwise from now on.
+        
+        Parameters
+        ----------
+        bulk_velocity : float
+            Held each step unless a gradient is given; scales the pressure limits in any case [m/s].
+        pressure_gradient : float, optional
+            Given loss of pressure along the pipe [Pa/m].
         """
     def restore(self, state: dict[str, typing.Any]) -> None:
         """

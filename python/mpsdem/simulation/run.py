@@ -209,10 +209,16 @@ class Simulation:
             )
         state = build_state(self.case, self.plan)
         state.step, state.time = checkpoint.step, checkpoint.time
-        if state.population is not None:
-            state.population.restore(checkpoint.state["solids"])
-        if state.liquid is not None:
-            state.liquid.restore(checkpoint.state["liquid"])
+        try:
+            if state.population is not None:
+                state.population.restore(checkpoint.state["solids"])
+            if state.liquid is not None:
+                state.liquid.restore(checkpoint.state["liquid"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise CheckpointError(
+                f"{path} holds no state that this version can go on from ({error}): "
+                "run the case anew"
+            ) from None
         for name, value in checkpoint.state["stages"].items():
             setattr(state, name, value)
         LOG.info("resumed at %g s", state.time)

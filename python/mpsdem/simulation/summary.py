@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from mpsdem.analysis import extent
-from mpsdem.geometry import Kind
-from mpsdem.liquids import ParticleLiquid
+from mpsdem.liquids import CLIPS, ParticleLiquid
 from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import Results
 from mpsdem.stages import State
@@ -117,11 +116,10 @@ def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
     count = liquid.particles.liquid_count
     return {
         "liquid_count": count,
-        # particles carry the mass: none is made or lost, or the count would tell
-        "mass_error": abs(count - int((liquid.kind == Kind.LIQUID).sum())) / count,
+        # particles carry the mass, as long as they are in the bore
+        "mass_error": 1 - liquid.count_in_bore / count,
         "pressure_iterations": _mean(results, "pressure_iterations"),
-        "pressures_clamped": int(results.diagnostics["clamped"].sum()),
-        "particles_held_back": int(results.diagnostics["held_back"].sum()),
+        "liquid_clips": {name: int(results.diagnostics[name].sum()) for name in CLIPS},
     }
 
 
