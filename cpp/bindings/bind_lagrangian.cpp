@@ -23,18 +23,39 @@ std::vector<mps::Kind> kinds(const Array<std::int8_t>& kind) {
     return out;
 }
 
+using Turbulence =
+    std::variant<std::monostate, const mps::MixingLength*, const mps::Smagorinsky*>; // None first
+
+mps::lagrangian::Flow flow(const Turbulence& turbulence) {
+    if (const auto* mixing = std::get_if<const mps::MixingLength*>(&turbulence)) return **mixing;
+    if (const auto* small = std::get_if<const mps::Smagorinsky*>(&turbulence)) return **small;
+    return mps::lagrangian::Laminar{};
+}
+
+mps::lagrangian::Solver solver_of(const std::string& name) {
+    using mps::lagrangian::Solver;
+    if (name == "two_level") return Solver::two_level;
+    if (name == "jacobi") return Solver::jacobi;
+    require(name == "cholmod", "solver must be two_level, jacobi or cholmod, not " + name);
+    return Solver::cholmod;
+}
+
 } // namespace
 
 void bind_lagrangian(py::module_ m) {
     py::class_<AdvanceReport>(m, "LiquidReport", "What a call of LagrangianLiquid.advance met.")
         .def_readonly("substeps", &AdvanceReport::substeps)
-        .def_readonly("iterations", &AdvanceReport::iterations,
-                      "Iterations of the pressure equation, all substeps.")
-        .def_readonly("retries", &AdvanceReport::retries, "Pressure solves that had to start anew.")
+        .def_property_readonly(
+            "iterations", [](const AdvanceReport& r) { return r.solve.iterations; },
+            "Iterations of the pressure equation, all substeps.")
+        .def_property_readonly(
+            "retries", [](const AdvanceReport& r) { return r.solve.retries; },
+            "Pressure solves that had to start anew.")
         .def_readonly("halvings", &AdvanceReport::halvings,
                       "Steps that were halved after a failed solve.")
-        .def_readonly("residual", &AdvanceReport::residual,
-                      "Largest residual of the pressure equation, relative [-].")
+        .def_property_readonly(
+            "residual", [](const AdvanceReport& r) { return r.solve.residual; },
+            "Largest residual of the pressure equation, relative [-].")
         .def_readonly("mean_gradient", &AdvanceReport::mean_gradient,
                       "Loss of pressure along the pipe, mean over the call [Pa/m].")
         .def_readonly("friction", &AdvanceReport::friction,
@@ -49,8 +70,9 @@ void bind_lagrangian(py::module_ m) {
                       "Particles whose neighbors fix no Laplacian: no viscosity acted there.")
         .def_readonly("held_back", &AdvanceReport::held_back,
                       "Particles kept from going nearer to the wall than 0.3 spacings.")
-        .def_readonly("solve_seconds", &AdvanceReport::solve_seconds,
-                      "Time spent in the pressure equation, set-up included [s].")
+        .def_property_readonly(
+            "solve_seconds", [](const AdvanceReport& r) { return r.solve.seconds; },
+            "Time spent in the pressure equation, set-up included [s].")
         .def_readonly("sound", &AdvanceReport::sound,
                       "False when the pressure could not be solved or speeds overflowed.");
 
@@ -74,14 +96,17 @@ density, kinematic_viscosity : float
     [kg/m3], [m2/s].
 roughness : float
     Of the wall [m].
-turbulent : bool
-    Mixing length and log-law wall function; else laminar with no-slip walls.
+turbulence : MixingLength or Smagorinsky or None
+    Length of the eddy viscosity, with the log law at the wall; None for laminar flow between walls
+    that hold the liquid.
 bulk_velocity : float
     Held each step unless a gradient is given; scales the pressure limits in any case [m/s].
 pressure_gradient : float, optional
     Given loss of pressure along the pipe [Pa/m].
 courant, tolerance, background, shift, pressure_limit : float
     Numbers of the method [-].
+solver : {"two_level", "jacobi", "cholmod"}
+    Of the pressure equation: conjugate gradients, or a factor each step where the build has it.
 threads : int
     The results do not depend on it.
 
@@ -92,23 +117,23 @@ Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
         .def(py::init([](const Array<Real>& position, const Array<Real>& velocity,
                          const Array<std::int8_t>& kind, Real particle_spacing, Real pipe_radius,
                          Real pipe_length, Real density, Real kinematic_viscosity, Real roughness,
-                         bool turbulent, Real bulk_velocity, std::optional<Real> pressure_gradient,
-                         Real courant, Real tolerance, Real background, Real shift,
+                         const Turbulence& turbulence, Real bulk_velocity,
+                         std::optional<Real> pressure_gradient, Real courant, Real tolerance,
+                         const std::string& solver, Real background, Real shift,
                          Real pressure_limit, int threads) {
                  using namespace mps::lagrangian;
                  return Liquid(vectors(position, "position"), vectors(velocity, "velocity"),
                                kinds(kind), geometry::Cylinder(pipe_radius, {}), pipe_radius,
                                pipe_length, density, kinematic_viscosity, roughness,
-                               turbulent ? Flow::turbulent : Flow::laminar,
-                               {bulk_velocity, pressure_gradient},
+                               flow(turbulence), {bulk_velocity, pressure_gradient},
                                {particle_spacing, courant, tolerance, background, shift,
-                                pressure_limit, threads});
+                                pressure_limit, solver_of(solver), threads});
              }),
              py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
              "pipe_radius"_a, "pipe_length"_a, "density"_a, "kinematic_viscosity"_a, "roughness"_a,
-             "turbulent"_a, "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
-             "courant"_a = 0.8, "tolerance"_a = 1e-3, "background"_a = 0.02, "shift"_a = 0.1,
-             "pressure_limit"_a = 0.25, "threads"_a = 1)
+             "turbulence"_a, "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
+             "courant"_a = 0.8, "tolerance"_a = 1e-3, "solver"_a = "two_level",
+             "background"_a = 0.02, "shift"_a = 0.1, "pressure_limit"_a = 0.25, "threads"_a = 1)
         .def("__len__", &Liquid::size)
         .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
              "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
@@ -176,8 +201,7 @@ Returns
             [](const Liquid& l) {
                 const auto s = l.snapshot();
                 return py::dict("position"_a = array(s.position), "velocity"_a = array(s.velocity),
-                                "pressure"_a = array(s.pressure), "kind"_a = array(s.kind),
-                                "id"_a = array(s.id));
+                                "pressure"_a = array(s.pressure), "id"_a = array(s.id));
             },
             "The exact state as arrays, for `restore`.")
         .def(
@@ -186,15 +210,13 @@ Returns
                 const auto position = state["position"].cast<Array<Real>>();
                 const auto velocity = state["velocity"].cast<Array<Real>>();
                 const auto pressure = state["pressure"].cast<Array<Real>>();
-                const auto kind = state["kind"].cast<Array<std::int8_t>>();
                 const auto id = state["id"].cast<Array<Index>>();
                 const auto copy = [](auto span) {
                     return std::vector<std::remove_cvref_t<decltype(span[0])>>(span.begin(),
                                                                                span.end());
                 };
                 l.restore({copy(vectors(position, "position")), copy(vectors(velocity, "velocity")),
-                           copy(values(pressure, "pressure")), copy(values(kind, "kind")),
-                           copy(values(id, "id"))});
+                           copy(values(pressure, "pressure")), copy(values(id, "id"))});
             },
             "state"_a, "Continue bit-equal from a `state` of the same liquid.");
 }

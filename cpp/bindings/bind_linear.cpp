@@ -31,7 +31,7 @@ Matrix matrix(const Array<Index>& row, const Array<Index>& column, const Array<f
     const auto w = values(weight, "weight");
     const auto d = dirichlet ? values(*dirichlet, "dirichlet") : std::span<const Real>{};
     linear::require_rows(r, c, w, d);
-    linear::LaplacianMatrix view(r, c, w, d, threads);
+    linear::LaplacianMatrix view(r.first(r.size() - 1), r.subspan(1), c, w, d, threads);
     linear::Clusters clusters(view);
     return {row, column, weight, dirichlet, std::move(view), std::move(clusters)};
 }
@@ -117,11 +117,12 @@ Solution conjugate_gradients(const Matrix& matrix, const Array<Real>& right_hand
         require(from.size() == x.size(), "start must have one value per row of the matrix");
         std::ranges::copy(from, x.begin());
     }
+    linear::Workspace workspace;
     const auto report = std::visit(
         [&](auto* m) {
             return linear::conjugate_gradients(matrix.view, matrix.clusters, *m,
                                                values(right_hand_side, "right_hand_side"),
-                                               tolerance, max_iterations, threads, x);
+                                               tolerance, max_iterations, threads, x, workspace);
         },
         preconditioner);
     return {array(x), report};
@@ -255,10 +256,10 @@ threads : int
         .def(
             "follow",
             [](linear::TwoLevelAdditive& preconditioner, const Matrix& matrix,
-               const Array<Real>& position) {
-                preconditioner.follow(matrix.view, vectors(position, "position"));
+               const Array<Real>& position, int threads) {
+                preconditioner.follow(matrix.view, vectors(position, "position"), threads);
             },
-            "matrix"_a, py::kw_only(), "position"_a,
+            "matrix"_a, py::kw_only(), "position"_a, "threads"_a = 1,
             R"(Take a later matrix, keeping the cells and their factor.
 
 A factor of 10 steps ago costs an iteration or two.
@@ -269,6 +270,8 @@ matrix : LaplacianMatrix
     Its unknowns may differ in number and order from those before.
 position : (n, 3) float64 ndarray
     Of its unknowns [m].
+threads : int
+    The result does not depend on it.
 )");
 
     bind_preconditioner<linear::TwoLevelDeflation>(

@@ -27,6 +27,7 @@ namespace {
 using AnyWall = std::variant<const geometry::Plane*, const geometry::Cylinder*>;
 using AnyLengthModel = std::variant<const mps::MixingLength*, const mps::Smagorinsky*>;
 
+using mps::EvaluatedPairs;
 using mps::Kind;
 using mps::ReferenceDensity;
 using neighbors::NeighborList;
@@ -79,7 +80,7 @@ Array<Real> number_density(const NeighborList& neighbors, const ReferenceDensity
                            int threads) {
     require_reach(neighbors, reference.weight);
     return filled<Real>(neighbors.size(), [&](auto result) {
-        mps::number_density(reference.weight, neighbors, threads, result);
+        mps::number_density(EvaluatedPairs(neighbors, reference.weight), threads, result);
     });
 }
 
@@ -89,7 +90,8 @@ Array<Real> gradient(const NeighborList& neighbors, const ReferenceDensity& refe
     require_reach(neighbors, reference.weight);
     const auto p = scalars_of(neighbors, pressure, "pressure");
     return filled<Vec3>(p.size(), [&](auto result) {
-        mps::gradient(Form{}, reference, neighbors, p, threads, result);
+        mps::gradient(Form{}, reference, EvaluatedPairs(neighbors, reference.weight), p, threads,
+                      result);
     });
 }
 
@@ -98,7 +100,8 @@ Array<Real> corrected_gradient(const NeighborList& neighbors, const ReferenceDen
     require_reach(neighbors, reference.weight);
     const auto p = scalars_of(neighbors, pressure, "pressure");
     return filled<Vec3>(p.size(), [&](auto result) {
-        mps::corrected_gradient(reference, neighbors, p, threads, result);
+        mps::corrected_gradient(reference, EvaluatedPairs(neighbors, reference.weight), p, threads,
+                                result);
     });
 }
 
@@ -111,7 +114,8 @@ Array<Real> background_gradient(const NeighborList& neighbors, const ReferenceDe
     return filled<Vec3>(p.size(), [&](auto result) {
         std::visit(
             [&](const auto* wall) {
-                mps::background_gradient(background, *wall, reference, neighbors,
+                mps::background_gradient(background, *wall, reference,
+                                         EvaluatedPairs(neighbors, reference.weight),
                                          std::span<const Kind>(kinds), p, threads, result);
             },
             any);
@@ -122,8 +126,9 @@ Array<Real> divergence(const NeighborList& neighbors, const ReferenceDensity& re
                        const Array<Real>& velocity, int threads) {
     require_reach(neighbors, reference.weight);
     const auto u = vectors_of(neighbors, velocity, "velocity");
-    return filled<Real>(
-        u.size(), [&](auto result) { mps::divergence(reference, neighbors, u, threads, result); });
+    return filled<Real>(u.size(), [&](auto result) {
+        mps::divergence(reference, EvaluatedPairs(neighbors, reference.weight), u, threads, result);
+    });
 }
 
 Array<Real> slip_divergence(const NeighborList& neighbors, const ReferenceDensity& reference,
@@ -135,8 +140,8 @@ Array<Real> slip_divergence(const NeighborList& neighbors, const ReferenceDensit
     return filled<Real>(u.size(), [&](auto result) {
         std::visit(
             [&](const auto* wall) {
-                mps::slip_divergence(*wall, reference, neighbors, std::span<const Kind>(kinds), u,
-                                     threads, result);
+                mps::slip_divergence(*wall, reference, EvaluatedPairs(neighbors, reference.weight),
+                                     std::span<const Kind>(kinds), u, threads, result);
             },
             any);
     });
@@ -147,7 +152,8 @@ Array<Real> laplacian(const NeighborList& neighbors, const ReferenceDensity& ref
     require_reach(neighbors, reference.weight);
     const auto apply = [&]<class T>(std::span<const T> f) {
         return filled<T>(f.size(), [&](auto result) {
-            mps::laplacian(reference, neighbors, f, threads, result);
+            mps::laplacian(reference, EvaluatedPairs(neighbors, reference.weight), f, threads,
+                           result);
         });
     };
     return field.ndim() == 1 ? apply(scalars_of(neighbors, field, "field"))
@@ -183,7 +189,8 @@ Array<Real> viscous_acceleration(const NeighborList& neighbors, const ReferenceD
     const auto nu = scalars_of(neighbors, viscosity, "viscosity");
     const auto kinds = kinds_of(neighbors, kind);
     return filled<Vec3>(u.size(), [&](auto result) {
-        mps::viscous_acceleration(reference, neighbors, kinds, nu, u, threads, result);
+        mps::viscous_acceleration(reference, EvaluatedPairs(neighbors, reference.weight), kinds, nu,
+                                  u, threads, result);
     });
 }
 
@@ -193,7 +200,7 @@ Array<Real> shear_rate(const NeighborList& neighbors, const ReferenceDensity& re
     const auto u = vectors_of(neighbors, velocity, "velocity");
     const auto kinds = kinds_of(neighbors, kind);
     return filled<Real>(u.size(), [&](auto result) {
-        mps::shear_rate(reference.weight, neighbors, kinds, u, threads, result);
+        mps::shear_rate(EvaluatedPairs(neighbors, reference.weight), kinds, u, threads, result);
     });
 }
 

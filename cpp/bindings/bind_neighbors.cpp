@@ -7,6 +7,26 @@ namespace mpsdem::bindings {
 
 using namespace pybind11::literals;
 
+namespace {
+
+std::vector<Index> rows_of(const neighbors::NeighborList& list) {
+    std::vector<Index> row{0};
+    for (std::size_t i = 0; i < list.rows(); ++i)
+        row.push_back(row.back() + list.last(i) - list.first(i));
+    return row;
+}
+
+/// Without the gaps.
+std::vector<Index> columns_of(const neighbors::NeighborList& list) {
+    std::vector<Index> column;
+    const auto all = list.column();
+    for (std::size_t i = 0; i < list.rows(); ++i)
+        column.insert(column.end(), all.begin() + list.first(i), all.begin() + list.last(i));
+    return column;
+}
+
+} // namespace
+
 void bind_neighbors(py::module_ m) {
     m.doc() = "Which points are near to which. SI units throughout.";
 
@@ -78,10 +98,10 @@ threads : int
         .def_property_readonly("period", &neighbors::NeighborList::period,
                                "Along x [m]; 0 for none.")
         .def_property_readonly(
-            "row", [](const neighbors::NeighborList& list) { return array(list.row()); },
+            "row", [](const neighbors::NeighborList& list) { return array(rows_of(list)); },
             "(n + 1,) uint32 ndarray: where the neighbors of each point begin in `column`.")
         .def_property_readonly(
-            "column", [](const neighbors::NeighborList& list) { return array(list.column()); },
+            "column", [](const neighbors::NeighborList& list) { return array(columns_of(list)); },
             "(row[n],) uint32 ndarray: the neighbors, row after row.");
 }
 

@@ -28,6 +28,13 @@ using LaneMask = decltype(Lanes{} < Lanes{});
     __builtin_memcpy(to, &v, sizeof v);
 }
 
+/// As many numbers in float32, in double.
+[[nodiscard]] [[gnu::always_inline]] inline Lanes widen(const float* from) noexcept {
+    using FloatLanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;
+    FloatLanes v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return __builtin_convertvector(v, Lanes);
+}
 /// Lane k from values[place[k]].
 [[nodiscard]] [[gnu::always_inline]] inline Lanes gather(const Real* values,
                                                          const Index* place) noexcept {

@@ -41,7 +41,7 @@ cholmod_sparse* upper_triangle(const LaplacianMatrix& matrix, const Clusters& cl
     SuiteSparse_long entries = 0;
     for (std::size_t i = 0; i < n; ++i) {
         start[i] = entries;
-        for (std::size_t k = matrix.row()[i]; k < matrix.row()[i + 1]; ++k) {
+        for (std::size_t k = matrix.first(i); k < matrix.last(i); ++k) {
             if (matrix.column()[k] >= i) continue;
             row[entries] = matrix.column()[k];
             value[entries++] = -static_cast<Real>(matrix.weight()[k]);

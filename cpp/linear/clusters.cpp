@@ -15,16 +15,16 @@ Clusters::Clusters(const LaplacianMatrix& matrix) {
     // symmetric, the edges that are missing then start from an unknown outside that set: few rows
     // are read whole.
     for (Index i = 0; i < n; ++i) {
-        if (matrix.row()[i] == matrix.row()[i + 1]) continue;
-        join(i, matrix.row()[i]);
-        join(i, matrix.row()[i + 1] - 1);
+        if (matrix.first(i) == matrix.last(i)) continue;
+        join(i, matrix.first(i));
+        join(i, matrix.last(i) - 1);
     }
     std::vector<Index> size(n, 0);
     for (Index i = 0; i < n; ++i) ++size[sets.find(i)];
     const auto largest = static_cast<Index>(std::ranges::max_element(size) - size.begin());
     for (Index i = 0; i < n; ++i) {
         if (sets.find(i) == sets.find(largest)) continue;
-        for (std::size_t k = matrix.row()[i]; k < matrix.row()[i + 1]; ++k) join(i, k);
+        for (std::size_t k = matrix.first(i); k < matrix.last(i); ++k) join(i, k);
     }
 
     std::vector<char> grounded(n, 0);

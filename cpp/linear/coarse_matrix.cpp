@@ -40,7 +40,7 @@ void pin_floating_sets(const LaplacianMatrix& matrix, const CoarseSpace& space,
 void add_row(const LaplacianMatrix& matrix, std::span<const Index> cell, Index i, SparseSum& sum) {
     const Index* const column = matrix.column().data();
     const float* const weight = matrix.weight().data();
-    sum.add(matrix.row()[i], matrix.row()[i + 1], [=](std::size_t k) {
+    sum.add(matrix.first(i), matrix.last(i), [=](std::size_t k) {
         return std::pair(cell[column[k]], -static_cast<Real>(weight[k]));
     });
 }

@@ -1,6 +1,7 @@
 #include "linear/coarse_space.hpp"
 
 #include "core/check.hpp"
+#include "core/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ CoarseSpace::CoarseSpace(std::span<const Vec3> position, Real particle_spacing, 
     std::vector<Index> count(box_cells() + 1, 0);
     for (const Vec3& r : position) ++count[box_cell(r)];
     number(merge_sparse(count, particle_spacing));
-    assign(position);
+    assign(position, 1);
 }
 
 void CoarseSpace::fit_box(std::span<const Vec3> position, Real particle_spacing) {
@@ -121,13 +122,12 @@ void CoarseSpace::number(const std::vector<std::size_t>& target) {
     }
 }
 
-void CoarseSpace::assign(std::span<const Vec3> position) {
+void CoarseSpace::assign(std::span<const Vec3> position, int threads) {
     cell_.resize(position.size());
+    parallel_for(position.size(), threads,
+                 [&](std::size_t i) { cell_[i] = number_[box_cell(position[i])]; });
     start_.assign(size_ + 2, 0);
-    for (std::size_t i = 0; i < position.size(); ++i) {
-        cell_[i] = number_[box_cell(position[i])];
-        ++start_[cell_[i] + 1];
-    }
+    for (const Index c : cell_) ++start_[c + 1];
     std::partial_sum(start_.begin(), start_.end(), start_.begin());
     member_.resize(position.size());
     std::vector<Index> next(start_.begin(), start_.end() - 1);

@@ -25,7 +25,7 @@ public:
     CoarseSpace(std::span<const Vec3> position, Real particle_spacing, Real period);
 
     /// Find the unknowns in the same cells again, after they have moved or changed their order.
-    void assign(std::span<const Vec3> position);
+    void assign(std::span<const Vec3> position, int threads);
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     /// Cell of each unknown; size() for one that lies in none, as where there was nothing before.

@@ -32,6 +32,11 @@ struct SolveReport {
 /// [-] Below, what rounding has left of constants in the residual of a floating cluster would grow.
 inline constexpr Real least_tolerance = 1e-13;
 
+/// Memory of a solve, kept from one to the next.
+struct Workspace {
+    std::vector<Real> b, r, p, z;
+};
+
 /// Preconditioned conjugate gradients for A x = b, from the first guess in x.
 ///
 /// Where no Dirichlet part holds a cluster, A x = b is solved for b less its mean there, and x has
@@ -40,7 +45,8 @@ inline constexpr Real least_tolerance = 1e-13;
 template <Preconditioner P>
 SolveReport conjugate_gradients(const LaplacianMatrix& a, const Clusters& clusters, P& m,
                                 std::span<const Real> right_hand_side, Real tolerance,
-                                int max_iterations, int threads, std::span<Real> x) {
+                                int max_iterations, int threads, std::span<Real> x,
+                                Workspace& workspace) {
     require(right_hand_side.size() == a.size() && x.size() == a.size() && m.size() == a.size(),
             "conjugate_gradients: right_hand_side, start and preconditioner must have one value "
             "per row of the matrix");
@@ -49,7 +55,8 @@ SolveReport conjugate_gradients(const LaplacianMatrix& a, const Clusters& cluste
     require(max_iterations >= 0, "conjugate_gradients: max_iterations must be >= 0");
     constexpr Real round_off = 1e-14; // [-] of the right-hand side, left over from its mean
 
-    std::vector<Real> b(right_hand_side.begin(), right_hand_side.end());
+    auto& [b, r, p, z] = workspace;
+    b.assign(right_hand_side.begin(), right_hand_side.end());
     const Real given = std::sqrt(dot(b, b, threads));
     clusters.remove_means(b, threads);
     const Real size = std::sqrt(dot(b, b, threads));
@@ -61,7 +68,9 @@ SolveReport conjugate_gradients(const LaplacianMatrix& a, const Clusters& cluste
 
     clusters.remove_means(x, threads);
     m.start(a, b, x, threads);
-    std::vector<Real> r(a.size()), p(a.size(), 0), z(a.size());
+    r.resize(a.size());
+    z.resize(a.size());
+    p.assign(a.size(), 0);
     const std::span<Real> q = z; // A p takes the place of z once p is made of it
     Real residual = std::sqrt(a.residual(b, x, r, threads)) / size;
     Real before = 1; // r.z of the iteration before

@@ -5,12 +5,7 @@
 /// Rows stored in float32 and summed in double: half the traffic, the full sum.
 namespace mpsdem::linear {
 
-[[nodiscard]] [[gnu::always_inline]] inline Lanes widen(const float* from) noexcept {
-    using FloatLanes [[gnu::vector_size(lane_count * sizeof(float))]] = float;
-    FloatLanes v;
-    __builtin_memcpy(&v, from, sizeof v);
-    return __builtin_convertvector(v, Lanes);
-}
+using mpsdem::widen;
 
 [[nodiscard]] [[gnu::always_inline]] inline Lanes widen(const Real* from) noexcept {
     return load(from);

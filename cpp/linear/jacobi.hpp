@@ -8,9 +8,14 @@ namespace mpsdem::linear {
 /// pipe in particle spacings.
 class Jacobi {
 public:
-    explicit Jacobi(const LaplacianMatrix& matrix) : inverse_(matrix.size()) {
-        std::ranges::transform(matrix.diagonal(), inverse_.begin(),
-                               [](Real d) { return d == 0 ? 0 : 1 / d; });
+    explicit Jacobi(const LaplacianMatrix& matrix) { follow(matrix, 1); }
+
+    /// Take another matrix; memory is kept.
+    void follow(const LaplacianMatrix& matrix, int threads) {
+        inverse_.resize(matrix.size());
+        const auto diagonal = matrix.diagonal();
+        parallel_for(size(), threads,
+                     [&](std::size_t i) { inverse_[i] = diagonal[i] == 0 ? 0 : 1 / diagonal[i]; });
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return inverse_.size(); }

@@ -15,23 +15,38 @@ namespace mpsdem::linear {
 ///
 /// Written with differences, a constant gives exactly zero where d = 0: float32 weights then cost
 /// 1e-9 in the solution, while a stored float32 diagonal costs 1e-4 and more in a long pipe.
-/// A view: the arrays must outlive it. Rows hold the neighbors of an unknown, not the unknown, and
-/// are as `require_rows` has it.
+/// A view: the arrays must outlive it. The entries of unknown i are first[i] ... last[i] - 1; they
+/// hold its neighbors, not itself. Rows may have gaps between them.
 class LaplacianMatrix {
 public:
-    /// `row` (n + 1,), entries of i in row[i]..row[i + 1]; `dirichlet` (n,), or empty for none.
-    LaplacianMatrix(std::span<const Index> row, std::span<const Index> column,
-                    std::span<const float> weight, std::span<const Real> dirichlet, int threads)
-        : row_(row), column_(column), weight_(weight), dirichlet_(dirichlet),
-          diagonal_(row.size() - 1) {
+    LaplacianMatrix() = default;
+
+    /// `first`, `last` (n,); `dirichlet` (n,), or empty for none.
+    LaplacianMatrix(std::span<const Index> first, std::span<const Index> last,
+                    std::span<const Index> column, std::span<const float> weight,
+                    std::span<const Real> dirichlet, int threads) {
+        view(first, last, column, weight, dirichlet, threads);
+    }
+
+    /// Look at another matrix; the memory of the diagonal is kept.
+    void view(std::span<const Index> first, std::span<const Index> last,
+              std::span<const Index> column, std::span<const float> weight,
+              std::span<const Real> dirichlet, int threads) {
+        first_ = first;
+        last_ = last;
+        column_ = column;
+        weight_ = weight;
+        dirichlet_ = dirichlet;
+        diagonal_.resize(size());
         parallel_for(size(), threads, [&](std::size_t i) {
-            const std::size_t first = row_[i], count = row_[i + 1] - first;
-            diagonal_[i] = row_sum(weight_.data() + first, count) + this->dirichlet(i);
+            const std::size_t count = last_[i] - first_[i];
+            diagonal_[i] = row_sum(weight_.data() + first_[i], count) + this->dirichlet(i);
         });
     }
 
-    [[nodiscard]] std::size_t size() const noexcept { return row_.size() - 1; }
-    [[nodiscard]] std::span<const Index> row() const noexcept { return row_; }
+    [[nodiscard]] std::size_t size() const noexcept { return first_.size(); }
+    [[nodiscard]] Index first(std::size_t i) const noexcept { return first_[i]; }
+    [[nodiscard]] Index last(std::size_t i) const noexcept { return last_[i]; }
     [[nodiscard]] std::span<const Index> column() const noexcept { return column_; }
     [[nodiscard]] std::span<const float> weight() const noexcept { return weight_; }
     [[nodiscard]] Real dirichlet(std::size_t i) const noexcept {
@@ -62,8 +77,8 @@ private:
     [[nodiscard]] Real times(std::size_t i, std::span<const Real> x) const noexcept {
         const Real here = x[i];
         Lanes lanes{};
-        std::size_t k = row_[i];
-        const std::size_t last = row_[i + 1];
+        std::size_t k = first_[i];
+        const std::size_t last = last_[i];
         for (; k + lane_count <= last; k += lane_count) {
             lanes += widen(&weight_[k]) * (here - gather(x.data(), &column_[k]));
         }
@@ -72,7 +87,7 @@ private:
         return sum;
     }
 
-    std::span<const Index> row_;
+    std::span<const Index> first_, last_;
     std::span<const Index> column_;
     std::span<const float> weight_;
     std::span<const Real> dirichlet_;

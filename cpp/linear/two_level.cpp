@@ -27,11 +27,12 @@ TwoLevelAdditive::TwoLevelAdditive(const LaplacianMatrix& matrix, const Cloud& c
     : jacobi_(matrix), space_(coarse_space(matrix, cloud)),
       factor_(coarse_matrix(matrix, space_, threads)), coarse_(space_.size() + 1, 0) {}
 
-void TwoLevelAdditive::follow(const LaplacianMatrix& matrix, std::span<const Vec3> position) {
+void TwoLevelAdditive::follow(const LaplacianMatrix& matrix, std::span<const Vec3> position,
+                              int threads) {
     require(position.size() == matrix.size(),
             "TwoLevelAdditive: position must have one row per row of the matrix");
-    jacobi_ = Jacobi(matrix);
-    space_.assign(position);
+    jacobi_.follow(matrix, threads);
+    space_.assign(position, threads);
 }
 
 Real TwoLevelAdditive::apply(std::span<const Real> r, std::span<Real> z, int threads) noexcept {

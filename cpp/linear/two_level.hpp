@@ -24,7 +24,7 @@ public:
     TwoLevelAdditive(const LaplacianMatrix& matrix, const Cloud& cloud, int threads);
 
     /// Take a later matrix and where its unknowns are; they may differ in number and order.
-    void follow(const LaplacianMatrix& matrix, std::span<const Vec3> position);
+    void follow(const LaplacianMatrix& matrix, std::span<const Vec3> position, int threads);
 
     [[nodiscard]] std::size_t size() const noexcept { return jacobi_.size(); }
     [[nodiscard]] std::size_t coarse_size() const noexcept { return space_.size(); }

@@ -3,8 +3,8 @@
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
 #include "mps/kind.hpp"
+#include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
-#include "neighbors/neighbor_list.hpp"
 
 #include <algorithm>
 
@@ -15,13 +15,13 @@ namespace mpsdem::mps {
 /// Wall and ghost particles count with the velocities they are given: a wall at rest is a no-slip
 /// wall, and in a plug flow a source of false divergence where its particles lie unevenly.
 /// Source: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
-inline void divergence(const ReferenceDensity& reference, const neighbors::NeighborList& neighbors,
-                       std::span<const Vec3> velocity, int threads, std::span<Real> result) {
+void divergence(const ReferenceDensity& reference, const Pairs auto& pairs,
+                std::span<const Vec3> velocity, int threads, std::span<Real> result) {
     const Real scale = dimensions / reference.number_density;
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         Real sum = 0;
-        neighbors.each(i, [&](Index j, const Vec3& r) {
-            sum += reference.weight.over_square(dot(r, r)) * dot(velocity[j] - velocity[i], r);
+        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
+            sum += factor * dot(velocity[j] - velocity[i], r);
         });
         result[i] = scale * sum;
     });
@@ -39,28 +39,28 @@ inline constexpr Real nearest_liquid = 0.3; // [-] spacings from the wall, as ne
 /// Exact for a normal velocity linear in the distance, where k is not cut. Pairs of wall and ghost
 /// particles count nothing, and a ghost's own sum is 0.
 template <geometry::Surface Wall>
-void slip_divergence(const Wall& wall, const ReferenceDensity& reference,
-                     const neighbors::NeighborList& neighbors, std::span<const Kind> kind,
-                     std::span<const Vec3> velocity, int threads, std::span<Real> result) {
+void slip_divergence(const Wall& wall, const ReferenceDensity& reference, const Pairs auto& pairs,
+                     std::span<const Kind> kind, std::span<const Vec3> velocity, int threads,
+                     std::span<Real> result) {
     const Real scale = dimensions / reference.number_density;
     const Real least = nearest_liquid * reference.spacing;
     const auto mirrored = [&](std::size_t liquid, std::size_t solid) {
-        const auto at = wall.at(neighbors.position(liquid));
-        const Real depth = -wall.at(neighbors.position(solid)).distance;
+        const auto at = wall.at(pairs.position(liquid));
+        const Real depth = -wall.at(pairs.position(solid)).distance;
         const Real k = std::min(1 + depth / std::max(at.distance, least), Real{3});
         return (-k * dot(velocity[liquid] - velocity[solid], at.normal)) * at.normal;
     };
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         Real sum = 0;
         const bool liquid = kind[i] == Kind::liquid;
         if (kind[i] != Kind::ghost) {
-            neighbors.each(i, [&](Index j, const Vec3& r) {
+            pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
                 const bool other = kind[j] == Kind::liquid;
                 if (!liquid && !other) return;
                 const Vec3 du = liquid && other ? velocity[j] - velocity[i]
                                 : liquid        ? mirrored(i, j)
                                                 : -mirrored(j, i);
-                sum += reference.weight.over_square(dot(r, r)) * dot(du, r);
+                sum += factor * dot(du, r);
             });
         }
         result[i] = scale * sum;

@@ -4,8 +4,8 @@
 #include "geometry/surface.hpp"
 #include "mps/kind.hpp"
 #include "mps/moment.hpp"
+#include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
-#include "neighbors/neighbor_list.hpp"
 
 #include <concepts>
 
@@ -32,14 +32,13 @@ static_assert(GradientForm<SumForm> && GradientForm<DifferenceForm>);
 
 /// grad p_i = (d / n0) sum_j form(p_i, p_j) r_ij W / r^2
 template <GradientForm Form>
-void gradient(const Form& form, const ReferenceDensity& reference,
-              const neighbors::NeighborList& neighbors, std::span<const Real> pressure, int threads,
-              std::span<Vec3> result) {
+void gradient(const Form& form, const ReferenceDensity& reference, const Pairs auto& pairs,
+              std::span<const Real> pressure, int threads, std::span<Vec3> result) {
     const Real scale = dimensions / reference.number_density;
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         Vec3 sum;
-        neighbors.each(i, [&](Index j, const Vec3& r) {
-            sum += (reference.weight.over_square(dot(r, r)) * form(pressure[i], pressure[j])) * r;
+        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
+            sum += (factor * form(pressure[i], pressure[j])) * r;
         });
         result[i] = scale * sum;
     });
@@ -48,15 +47,12 @@ void gradient(const Form& form, const ReferenceDensity& reference,
 /// grad p_i = M_i^-1 sum_j (p_j - p_i) r_ij W / r^2, M_i the neighborhood's moment: exact for
 /// linear pressures anywhere. Where M_i has no inverse, the uncorrected difference. Blows up
 /// without dissipation elsewhere. Source: Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
-inline void corrected_gradient(const ReferenceDensity& reference,
-                               const neighbors::NeighborList& neighbors,
-                               std::span<const Real> pressure, int threads,
-                               std::span<Vec3> result) {
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+void corrected_gradient(const ReferenceDensity& reference, const Pairs auto& pairs,
+                        std::span<const Real> pressure, int threads, std::span<Vec3> result) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         Vec3 sum;
         Moment moment;
-        neighbors.each(i, [&](Index j, const Vec3& r) {
-            const Real factor = reference.weight.over_square(dot(r, r));
+        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
             sum += (factor * (pressure[j] - pressure[i])) * r;
             moment.add(factor, r);
         });
@@ -75,14 +71,13 @@ inline void corrected_gradient(const ReferenceDensity& reference,
 /// 0.2 rho (dx/dt)^2. n is the wall's at particle i.
 template <geometry::Surface Wall>
 void background_gradient(Real background, const Wall& wall, const ReferenceDensity& reference,
-                         const neighbors::NeighborList& neighbors, std::span<const Kind> kind,
+                         const Pairs auto& pairs, std::span<const Kind> kind,
                          std::span<const Real> pressure, int threads, std::span<Vec3> result) {
     const Real scale = dimensions / reference.number_density;
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
-        const Vec3 n = wall.at(neighbors.position(i)).normal;
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
+        const Vec3 n = wall.at(pairs.position(i)).normal;
         Vec3 sum, push;
-        neighbors.each(i, [&](Index j, const Vec3& r) {
-            const Real factor = reference.weight.over_square(dot(r, r));
+        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
             sum += (factor * (pressure[j] - pressure[i])) * r;
             push += kind[j] == kind[i] ? factor * r : (factor * dot(r, n)) * n;
         });

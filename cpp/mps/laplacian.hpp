@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/parallel.hpp"
+#include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
-#include "neighbors/neighbor_list.hpp"
 
 namespace mpsdem::mps {
 
@@ -12,14 +12,13 @@ namespace mpsdem::mps {
 /// grows as one over the spacing. A wall acts through the values of its particles.
 /// Source: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
 template <class T>
-void laplacian(const ReferenceDensity& reference, const neighbors::NeighborList& neighbors,
-               std::span<const T> field, int threads, std::span<T> result) {
+void laplacian(const ReferenceDensity& reference, const Pairs auto& pairs, std::span<const T> field,
+               int threads, std::span<T> result) {
     const Real scale = 2 * dimensions / (reference.number_density * reference.lambda);
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         T sum{};
-        neighbors.each(i, [&](Index j, const Vec3& r) {
-            sum += reference.weight(norm(r)) * (field[j] - field[i]);
-        });
+        pairs.each(i,
+                   [&](Index j, const Vec3&, Real w, Real) { sum += w * (field[j] - field[i]); });
         result[i] = scale * sum;
     });
 }

@@ -36,7 +36,7 @@ void least_squares_laplacian(const Wall& wall, const neighbors::NeighborList& ne
     const Real scale = 1 / neighbors.radius();
 
     const auto each_node = [&](std::size_t i, const auto& visit) {
-        neighbors.each(i, [&](Index j, Vec3 r) {
+        neighbors.each(i, [&](Index j, Vec3 r, Index) {
             if (kind[j] == Kind::ghost) return;
             if (kind[j] == Kind::wall) {
                 const auto at = wall.at(neighbors.position(j));
@@ -50,7 +50,7 @@ void least_squares_laplacian(const Wall& wall, const neighbors::NeighborList& ne
         });
     };
 
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+    parallel_for(neighbors.rows(), threads, [&](std::size_t i) {
         result[i] = T{};
         deficient[i] = 0;
         if (kind[i] != Kind::liquid) return;

@@ -3,8 +3,7 @@
 #include "core/parallel.hpp"
 #include "mps/kind.hpp"
 #include "mps/moment.hpp"
-#include "mps/weight.hpp"
-#include "neighbors/neighbor_list.hpp"
+#include "mps/pairs.hpp"
 
 namespace mpsdem::mps {
 
@@ -15,17 +14,15 @@ namespace mpsdem::mps {
 /// Exact for linear velocities, and zero in rotation, wherever the neighbors are; walls do not
 /// count, as liquid slips along them in the coarse view. 0 where the neighbors are too few.
 /// Source: the moment M after Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
-inline void shear_rate(const Weight& weight, const neighbors::NeighborList& neighbors,
-                       std::span<const Kind> kind, std::span<const Vec3> velocity, int threads,
-                       std::span<Real> result) {
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+void shear_rate(const Pairs auto& pairs, std::span<const Kind> kind, std::span<const Vec3> velocity,
+                int threads, std::span<Real> result) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         result[i] = 0;
         if (kind[i] != Kind::liquid) return;
         Moment moment;
         Vec3 x, y, z; // sums of each component of the velocity
-        neighbors.each(i, [&](Index j, const Vec3& r) {
+        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
             if (kind[j] != Kind::liquid) return;
-            const Real factor = weight.over_square(dot(r, r));
             const Vec3 du = velocity[j] - velocity[i];
             moment.add(factor, r);
             x += (factor * du.x) * r;

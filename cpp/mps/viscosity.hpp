@@ -2,8 +2,8 @@
 
 #include "core/parallel.hpp"
 #include "mps/kind.hpp"
+#include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
-#include "neighbors/neighbor_list.hpp"
 
 namespace mpsdem::mps {
 
@@ -15,19 +15,17 @@ namespace mpsdem::mps {
 /// are left to the wall function. Stable for steps below dt = lambda n0 / (2 d nu sum W), about
 /// 0.3 dx^2 / nu.
 /// Source: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205, with a viscosity that varies.
-inline void viscous_acceleration(const ReferenceDensity& reference,
-                                 const neighbors::NeighborList& neighbors,
-                                 std::span<const Kind> kind, std::span<const Real> viscosity,
-                                 std::span<const Vec3> velocity, int threads,
-                                 std::span<Vec3> acceleration) {
+void viscous_acceleration(const ReferenceDensity& reference, const Pairs auto& pairs,
+                          std::span<const Kind> kind, std::span<const Real> viscosity,
+                          std::span<const Vec3> velocity, int threads,
+                          std::span<Vec3> acceleration) {
     const Real scale = dimensions / (reference.number_density * reference.lambda);
-    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
         Vec3 sum;
         if (kind[i] == Kind::liquid) {
-            neighbors.each(i, [&](Index j, const Vec3& r) {
+            pairs.each(i, [&](Index j, const Vec3&, Real w, Real) {
                 if (kind[j] != Kind::liquid) return;
-                sum += (reference.weight(norm(r)) * (viscosity[i] + viscosity[j])) *
-                       (velocity[j] - velocity[i]);
+                sum += (w * (viscosity[i] + viscosity[j])) * (velocity[j] - velocity[i]);
             });
         }
         acceleration[i] = scale * sum;

@@ -10,23 +10,49 @@
 
 namespace mpsdem::neighbors {
 
-/// Points binned into cubic cells by a counting sort; x may be periodic. Cells run with x slowest,
-/// so that sorted points form slabs along a pipe.
+/// Cubic cells over the box of some points; x may be periodic. Numbers run with x slowest, so that
+/// points sorted by cells form slabs along a pipe.
+struct Cells {
+    /// `period` [m] along x, 0 for none; positions must be finite and in [0, period). Cells are at
+    /// least `cell_size` wide.
+    Cells(std::span<const Vec3> position, Real cell_size, Real period);
+
+    [[nodiscard]] std::size_t count() const noexcept {
+        return static_cast<std::size_t>(n[0] * n[1] * n[2]);
+    }
+    [[nodiscard]] Index of(const Vec3& position) const noexcept {
+        const auto along = [&](std::size_t d, Real x) {
+            const auto k = static_cast<std::int64_t>((x - low[d]) * inverse[d]);
+            return std::clamp<std::int64_t>(k, 0, n[d] - 1);
+        };
+        return static_cast<Index>((along(0, position.x) * n[1] + along(1, position.y)) * n[2] +
+                                  along(2, position.z));
+    }
+
+    std::array<std::int64_t, 3> n{};
+    std::array<Real, 3> low{};     // [m]
+    std::array<Real, 3> inverse{}; // [1/m] of the width of a cell
+};
+
+/// Points binned into cells by a counting sort.
 class CellGrid {
 public:
-    /// `period` [m] along x, 0 for none; positions must lie in [0, period). Cells are at least
-    /// `cell_size` wide.
     CellGrid(Real cell_size, Real period) : cell_size_(cell_size), period_(period) {}
 
-    /// Order of the points by cell: the k-th sorted point is position[order[k]]. All must be
-    /// finite.
-    void sort(std::span<const Vec3> position, std::vector<Index>& order);
+    /// Order of the points by cell: the k-th sorted point is position[order[k]].
+    void sort(std::span<const Vec3> position, std::vector<Index>& order) {
+        sort(position, Cells(position, cell_size_, period_), order, 1);
+    }
+    /// The same by given cells, which other points may share.
+    void sort(std::span<const Vec3> position, const Cells& cells, std::vector<Index>& order,
+              int threads);
 
     /// Call visit(first, last, image) for the ranges of sorted points in the cells around a cell,
     /// in ascending order of the cells for each image; `image` periods are to be added to x_i -
     /// x_j.
     template <class Visit>
     void around(std::size_t cell, const Visit& visit) const {
+        if (start_.empty()) return;
         const auto c = static_cast<std::int64_t>(cell);
         const std::int64_t cz = c % n_[2], cy = c / n_[2] % n_[1], cx = c / (n_[2] * n_[1]);
         for (std::int64_t dx = -1; dx <= 1; ++dx) {
@@ -64,8 +90,9 @@ private:
     Real cell_size_; // [m]
     Real period_;    // [m]
     std::array<std::int64_t, 3> n_{};
-    std::vector<Index> start_; // (cells + 1,) first sorted point of each cell
-    std::vector<Index> cell_;  // (n,) by sorted point
+    std::vector<Index> start_;          // (cells + 1,) first sorted point of each cell
+    std::vector<Index> cell_;           // (n,) by sorted point
+    std::vector<Index> cell_of_, next_; // memory of a sort
 };
 
 } // namespace mpsdem::neighbors

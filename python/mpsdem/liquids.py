@@ -276,7 +276,7 @@ def build_liquid(case: Case, plan: Plan) -> Liquid | None:
         density=liquid.density,
         kinematic_viscosity=liquid.kinematic_viscosity,
         roughness=pipe.roughness,
-        turbulent=not profile.laminar,
+        turbulence=None if profile.laminar else mps.MixingLength(pipe_radius=pipe.radius),
         bulk_velocity=liquid.bulk_velocity,
         pressure_gradient=liquid.pressure_gradient,
         courant=case.fidelity.courant,

@@ -1,37 +1,44 @@
 #include "mps/lagrangian/liquid.hpp"
 
 #include "core/check.hpp"
+#include "linear/ordered_sum.hpp"
 #include "mps/divergence.hpp"
 #include "mps/gradient.hpp"
 #include "mps/least_squares_laplacian.hpp"
 #include "mps/number_density.hpp"
 #include "mps/shear_rate.hpp"
+#include "mps/shifting.hpp"
 #include "mps/viscosity.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 namespace mpsdem::mps::lagrangian {
 
 namespace {
 
-constexpr Real reach = 2.1;          // [-] r_e over the spacing, for every operator
-constexpr Real longest_shift = 0.1;  // [-] spacings that a particle may be shifted in a step
-constexpr Real viscous_limit = 0.1;  // [-] largest nu dt / dx^2
-constexpr Real most_substeps = 1e4;  // [-] of one call; beyond it the speeds have run away
-constexpr int most_halvings = 5;     // [-] of one call
-constexpr int most_iterations = 500; // [-] of the pressure equation
-constexpr Index none = std::numeric_limits<Index>::max();
+constexpr Real reach = 2.1;         // [-] r_e over the spacing, for every operator
+constexpr Real longest_shift = 0.1; // [-] spacings that a particle may be shifted in a step
+constexpr Real viscous_limit = 0.1; // [-] largest nu dt / dx^2
+constexpr Real most_substeps = 1e4; // [-] of one call; beyond it the speeds have run away
+constexpr int most_halvings = 5;    // [-] of one call
+
+/// Put the first order.size() values in an order.
+template <class T>
+void reorder(std::vector<T>& values, std::span<const Index> order, int threads,
+             std::vector<T>& memory) {
+    memory.resize(order.size());
+    parallel_for(order.size(), threads, [&](std::size_t k) { memory[k] = values[order[k]]; });
+    std::ranges::copy(memory, values.begin());
+}
 
 template <class T>
-void reorder(std::vector<T>& values, const std::vector<Index>& order) {
-    std::vector<T> sorted(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
-    values = std::move(sorted);
+std::vector<T> in_given_order(std::span<const T> values, std::span<const Index> id) {
+    std::vector<T> out(id.size());
+    for (std::size_t i = 0; i < values.size(); ++i) out[id[i]] = values[i];
+    return out;
 }
 
 } // namespace
@@ -43,28 +50,62 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     : wall_(wall), pipe_radius_(pipe_radius), pipe_length_(pipe_length), density_(density),
       viscosity_(kinematic_viscosity), flow_(flow), drive_(drive), numerics_(numerics),
       reference_(numerics.particle_spacing, reach * numerics.particle_spacing),
-      wall_function_(kinematic_viscosity, roughness), mixing_length_(pipe_radius),
+      wall_function_(kinematic_viscosity, roughness),
       neighbors_(reach * numerics.particle_spacing, pipe_length),
-      position_(position.begin(), position.end()), velocity_(velocity.begin(), velocity.end()),
-      kind_(kind.begin(), kind.end()) {
+      cells_(position, neighbors_.radius(), pipe_length), grid_(neighbors_.radius(), pipe_length),
+      pairs_(reference_.weight), pressure_equation_(numerics.solver, numerics.tolerance,
+                                                    numerics.particle_spacing, numerics.threads) {
     require(position.size() == velocity.size() && position.size() == kind.size(),
             "Liquid: position, velocity and kind must have the same length");
     require(density > 0, "Liquid: density must be > 0 kg/m3");
     require(numerics.courant > 0, "Liquid: courant must be > 0");
     require(numerics.tolerance > 0, "Liquid: tolerance must be > 0");
     require(numerics.threads >= 1, "Liquid: threads must be >= 1");
-    liquid_count_ = static_cast<std::size_t>(std::ranges::count(kind_, Kind::liquid));
+    liquid_count_ = static_cast<std::size_t>(std::ranges::count(kind, Kind::liquid));
+    wall_count_ = static_cast<std::size_t>(std::ranges::count(kind, Kind::wall));
     require(liquid_count_ > 0, "Liquid: at least one liquid particle is needed");
+    for (const Kind k : {Kind::liquid, Kind::wall, Kind::ghost}) {
+        std::vector<Vec3> at;
+        std::vector<Index> id;
+        for (std::size_t i = 0; i < kind.size(); ++i) {
+            if (kind[i] != k) continue;
+            at.push_back(position[i]);
+            id.push_back(static_cast<Index>(i));
+        }
+        grid_.sort(at, cells_, order_, 1);
+        for (const Index i : order_) {
+            id_.push_back(id[i]);
+            position_.push_back(at[i]);
+            velocity_.push_back(velocity[id[i]]);
+            kind_.push_back(k);
+        }
+    }
     pressure_.assign(size(), 0);
-    id_.resize(size());
-    std::iota(id_.begin(), id_.end(), Index{0});
+    find_pairs();
+    pressure_equation_.assemble(neighbors_, pairs_, {});
+    pressure_equation_.prepare();
+
+    // Ghosts lie still behind the wall, and so do their shares.
+    neighbors::NeighborList behind(neighbors_.radius(), pipe_length);
+    behind.find(std::span<const Vec3>(position_).subspan(liquid_count_), 1);
+    behind_first_.push_back(0);
+    for (std::size_t g = wall_count_; g < behind.rows(); ++g) {
+        Real total = 0;
+        behind.each(g, [&](Index w, const Vec3& r, Index) {
+            if (w >= wall_count_) return;
+            behind_column_.push_back(static_cast<Index>(liquid_count_) + w);
+            behind_share_.push_back(reference_.weight(norm(r)));
+            total += behind_share_.back();
+        });
+        for (std::size_t k = behind_first_.back(); k < behind_share_.size(); ++k)
+            behind_share_[k] /= total;
+        behind_first_.push_back(static_cast<Index>(behind_column_.size()));
+    }
 }
 
 AdvanceReport Liquid::advance(Real dt) {
     require(dt > 0, "advance: dt must be > 0 s");
     AdvanceReport report;
-    // The coarse matrix lives within a call, so that the state between calls is all there is.
-    preconditioner_.reset();
     Real longest = dt;
     for (Real left = dt; left > 1e-9 * dt && report.sound;) {
         const Real count = std::ceil(left / std::min(stable_step(), longest) - 1e-9);
@@ -87,10 +128,14 @@ AdvanceReport Liquid::advance(Real dt) {
     return report;
 }
 
+Real Liquid::dynamic_pressure() const noexcept {
+    return density_ * drive_.bulk_velocity * drive_.bulk_velocity;
+}
+
 /// Largest step for the speeds and the molecular viscosity [s]; the eddy viscosity is cut to fit.
 Real Liquid::stable_step() const {
     Real fastest2 = 0;
-    for (const Vec3& u : velocity_) fastest2 = std::max(fastest2, dot(u, u));
+    for (const Vec3& u : liquid_velocity()) fastest2 = std::max(fastest2, dot(u, u));
     const Real dx = numerics_.particle_spacing;
     const Real speed = std::max(std::sqrt(fastest2), std::numeric_limits<Real>::min());
     return std::min(numerics_.courant * dx / speed, viscous_limit * dx * dx / viscosity_);
@@ -99,17 +144,15 @@ Real Liquid::stable_step() const {
 /// One substep; `false` and the state as before where the pressure could not be solved.
 bool Liquid::step(Real dt, AdvanceReport& report) {
     sort();
-    neighbors_.find(position_, numerics_.threads);
-    const std::vector<Vec3> velocity_before = velocity_;
+    find_pairs();
+    velocity_before_ = velocity_;
     const Real before = bulk_velocity();
     predict(dt, report);
     friction_ = density_ * (before - bulk_velocity()) / dt;
-    assemble(dt);
-    if (!solve_pressure(report)) {
-        velocity_ = velocity_before;
+    if (!solve_pressure(dt, report)) {
+        velocity_ = velocity_before_;
         return false;
     }
-    take_pressure(report);
     correct(dt);
     move(dt, report);
     return true;
@@ -117,178 +160,114 @@ bool Liquid::step(Real dt, AdvanceReport& report) {
 
 /// Put neighbors in space near in memory.
 void Liquid::sort() {
-    const auto order = neighbors::cell_order(position_, neighbors_.radius(), pipe_length_);
-    reorder(position_, order);
-    reorder(velocity_, order);
-    reorder(kind_, order);
-    reorder(pressure_, order);
-    reorder(id_, order);
+    const int threads = numerics_.threads;
+    grid_.sort(liquid_position(), cells_, order_, threads);
+    reorder(position_, order_, threads, shift_);
+    reorder(velocity_, order_, threads, shift_);
+    reorder(pressure_, order_, threads, scalar_);
+    reorder(id_, order_, threads, id_memory_);
+}
+
+void Liquid::find_pairs() {
+    const std::size_t ghosts = size() - liquid_count_ - wall_count_;
+    neighbors_.find(position_, {{liquid_count_, wall_count_, ghosts}, liquid_count_ + wall_count_},
+                    numerics_.threads);
+    pairs_.store(neighbors_, numerics_.threads);
 }
 
 /// Viscosity and wall shear, on the liquid.
 void Liquid::predict(Real dt, AdvanceReport& report) {
-    const std::size_t n = size();
     const int threads = numerics_.threads;
-    const Real dx = numerics_.particle_spacing;
-    acceleration_.resize(n);
-    if (flow_ == Flow::laminar) {
-        deficient_.resize(n);
+    acceleration_.resize(pairs_.rows());
+    if (turbulent()) {
+        find_eddy_viscosity(dt, report);
+        viscous_acceleration(reference_, pairs_, kind_, eddy_viscosity_, velocity_, threads,
+                             acceleration_);
+        add_wall_shear();
+    } else {
+        deficient_.resize(pairs_.rows());
         least_squares_laplacian<geometry::Cylinder, Vec3>(wall_, neighbors_, kind_, velocity_,
                                                           threads, acceleration_, deficient_);
         report.deficient += static_cast<std::size_t>(std::ranges::count(deficient_, 1));
         for (Vec3& a : acceleration_) a = viscosity_ * a;
-    } else {
-        scalar_.resize(n);
-        eddy_viscosity_.resize(n);
-        shear_rate(reference_.weight, neighbors_, kind_, velocity_, threads, scalar_);
-        const Real largest = viscous_limit * dx * dx / dt;
-        eddy_viscosity(mixing_length_, position_, scalar_, largest, threads, eddy_viscosity_);
-        report.viscosity_capped +=
-            static_cast<std::size_t>(std::ranges::count(eddy_viscosity_, largest));
-        for (Real& nu : eddy_viscosity_) nu += viscosity_;
-        viscous_acceleration(reference_, neighbors_, kind_, eddy_viscosity_, velocity_, threads,
-                             acceleration_);
-        add_wall_shear();
     }
-    parallel_for(n, threads, [&](std::size_t i) {
-        if (kind_[i] == Kind::liquid) velocity_[i] += dt * acceleration_[i];
-    });
+    parallel_for(liquid_count_, threads,
+                 [&](std::size_t i) { velocity_[i] += dt * acceleration_[i]; });
+}
+
+void Liquid::find_eddy_viscosity(Real dt, AdvanceReport& report) {
+    const int threads = numerics_.threads;
+    const Real dx = numerics_.particle_spacing;
+    const Real largest = viscous_limit * dx * dx / dt;
+    scalar_.resize(pairs_.rows());
+    eddy_viscosity_.resize(pairs_.rows());
+    shear_rate(pairs_, kind_, velocity_, threads, scalar_);
+    const auto liquid = std::span(eddy_viscosity_).first(liquid_count_);
+    std::visit(
+        [&]<class Model>(const Model& model) {
+            if constexpr (LengthModel<Model>)
+                eddy_viscosity(model, liquid_position(), scalar_, largest, threads, liquid);
+        },
+        flow_);
+    report.viscosity_capped += static_cast<std::size_t>(std::ranges::count(liquid, largest));
+    parallel_for(liquid_count_, threads, [&](std::size_t i) { liquid[i] += viscosity_; });
 }
 
 /// Shear of the log law on the liquid nearer to the wall than a spacing. The layer's particles
 /// carry the shear of the whole wall, however many they are at the moment.
 void Liquid::add_wall_shear() {
     const Real dx = numerics_.particle_spacing;
-    const auto liquid = static_cast<Real>(liquid_count_);
+    const int threads = numerics_.threads;
+    constexpr Real outside_the_layer = -1;
+    parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        const Real distance = wall_.at(position_[i]).distance;
+        scalar_[i] = outside_the_layer;
+        if (distance >= dx) return;
+        const Real speed = norm(velocity_[i]);
+        const Real y = std::max(distance, nearest_liquid * dx);
+        scalar_[i] = speed == 0 ? 0 : wall_function_.shear(speed, y) / speed; // [1/s m]
+    });
     std::size_t layer = 0;
     Real sum = 0; // of shear over density
-    scalar_.assign(size(), 0);
-    for (std::size_t i = 0; i < size(); ++i) {
-        if (kind_[i] != Kind::liquid) continue;
-        const Real distance = wall_.at(position_[i]).distance;
-        if (distance >= dx) continue;
-        const Real speed = norm(velocity_[i]);
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
+        if (scalar_[i] == outside_the_layer) continue;
         ++layer;
-        if (speed == 0) continue;
-        const Real shear = wall_function_.shear(speed, std::max(distance, nearest_liquid * dx));
-        scalar_[i] = shear / speed;
-        sum += shear * velocity_[i].x / speed;
+        sum += scalar_[i] * velocity_[i].x;
     }
     if (layer == 0) return;
     const auto count = static_cast<Real>(layer);
     // wall area over the layer's volume: 2 pi R L / (count pi R^2 L / liquid)
-    const Real per_volume = 2 * liquid / (pipe_radius_ * count);
-    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
-        acceleration_[i] -= (per_volume * scalar_[i]) * velocity_[i];
+    const Real per_volume = 2 * static_cast<Real>(liquid_count_) / (pipe_radius_ * count);
+    parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        if (scalar_[i] != outside_the_layer)
+            acceleration_[i] -= (per_volume * scalar_[i]) * velocity_[i];
     });
     wall_shear_ = density_ * sum / count;
 }
 
-/// Solve for p'; where the solve fails, once more from zero with a new coarse matrix.
-bool Liquid::solve_pressure(AdvanceReport& report) {
-    const auto start = std::chrono::steady_clock::now();
+/// Source, solve, cuts, ghosts; `false` where the equation could not be solved.
+bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     const int threads = numerics_.threads;
-    const linear::LaplacianMatrix matrix(row_, column_, weight_, {}, threads);
-    const linear::Clusters clusters(matrix);
-    bool solved = false;
-    for (int attempt = 0; attempt < 2 && !solved; ++attempt) {
-        if (attempt > 0) {
-            std::ranges::fill(solution_, Real{0});
-            preconditioner_.reset();
-            ++report.retries;
-        }
-        if (preconditioner_) {
-            preconditioner_->follow(matrix, unknown_position_);
-        } else {
-            preconditioner_.emplace(
-                matrix, linear::Cloud{unknown_position_, numerics_.particle_spacing, pipe_length_},
-                threads);
-        }
-        const auto solve =
-            linear::conjugate_gradients(matrix, clusters, *preconditioner_, right_hand_side_,
-                                        numerics_.tolerance, most_iterations, threads, solution_);
-        report.iterations += solve.iterations;
-        report.residual = std::max(report.residual, solve.residual);
-        solved = solve.outcome == linear::Outcome::converged;
-    }
-    report.solve_seconds +=
-        std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
-    return solved;
-}
-
-/// Take over p' with mean zero in the liquid, cut to the limit; a ghost gets the wall's.
-void Liquid::take_pressure(AdvanceReport& report) {
-    Real mean = 0, change = 0;
-    for (std::size_t k = 0; k < particle_.size(); ++k)
-        if (kind_[particle_[k]] == Kind::liquid) mean += solution_[k];
-    mean /= static_cast<Real>(liquid_count_);
-    const Real scale = density_ * drive_.bulk_velocity * drive_.bulk_velocity;
-    const Real limit = flow_ == Flow::turbulent && scale > 0
-                           ? numerics_.pressure_limit * scale
-                           : std::numeric_limits<Real>::infinity();
-    for (std::size_t k = 0; k < particle_.size(); ++k) {
-        const std::size_t i = particle_[k];
-        const Real p = std::clamp(solution_[k] - mean, -limit, limit);
-        if (kind_[i] == Kind::liquid) {
-            if (p != solution_[k] - mean) ++report.clamped;
-            change += (p - pressure_[i]) * (p - pressure_[i]);
-        }
-        pressure_[i] = p;
-    }
-    pressure_noise_ = std::sqrt(change / static_cast<Real>(liquid_count_));
-    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
-        if (kind_[i] != Kind::ghost) return;
-        Real sum = 0, weights = 0;
-        neighbors_.each(i, [&](Index j, const Vec3& r) {
-            if (kind_[j] != Kind::wall) return;
-            const Real w = reference_.weight(norm(r));
-            sum += w * pressure_[j];
-            weights += w;
-        });
-        pressure_[i] = weights > 0 ? sum / weights : 0;
-    });
-}
-
-/// Matrix and right-hand side over liquid and wall particles.
-void Liquid::assemble(Real dt) {
-    const std::size_t n = size();
-    const int threads = numerics_.threads;
-    unknown_.resize(n);
-    particle_.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-        unknown_[i] = kind_[i] == Kind::ghost ? none : static_cast<Index>(particle_.size());
-        if (kind_[i] != Kind::ghost) particle_.push_back(static_cast<Index>(i));
-    }
-    const std::size_t unknowns = particle_.size();
-    row_.assign(unknowns + 1, 0);
-    parallel_for(unknowns, threads, [&](std::size_t k) {
-        Index count = 0;
-        neighbors_.each(particle_[k], [&](Index j, const Vec3&) { count += unknown_[j] != none; });
-        row_[k + 1] = count;
-    });
-    std::partial_sum(row_.begin(), row_.end(), row_.begin());
-    column_.resize(row_.back());
-    weight_.resize(row_.back());
-    scalar_.resize(n);
-    slip_divergence(wall_, reference_, neighbors_, kind_, velocity_, threads, scalar_);
+    const std::size_t unknowns = pairs_.rows();
+    right_hand_side_.resize(unknowns);
+    slip_divergence(wall_, reference_, pairs_, kind_, velocity_, threads, right_hand_side_);
     const Real scale =
         -density_ / dt * reference_.number_density * reference_.lambda / (2 * dimensions);
-    right_hand_side_.resize(unknowns);
-    solution_.resize(unknowns);
-    unknown_position_.resize(unknowns);
-    parallel_for(unknowns, threads, [&](std::size_t k) {
-        const std::size_t i = particle_[k];
-        Index at = row_[k];
-        neighbors_.each(i, [&](Index j, const Vec3& r) {
-            if (unknown_[j] == none) return;
-            column_[at] = unknown_[j];
-            weight_[at++] = static_cast<float>(reference_.weight(norm(r)));
-        });
-        right_hand_side_[k] = kind_[i] == Kind::liquid ? scale * scalar_[i] : 0;
-        solution_[k] = pressure_[i];
-        unknown_position_[k] = neighbors_.position(i);
+    parallel_for(unknowns, threads, [&](std::size_t i) {
+        right_hand_side_[i] = i < liquid_count_ ? scale * right_hand_side_[i] : 0;
     });
     remove_axial_bias();
+    pressure_before_.assign(pressure_.begin(),
+                            pressure_.begin() + static_cast<std::ptrdiff_t>(unknowns));
+    pressure_equation_.assemble(neighbors_, pairs_, {});
+    if (!pressure_equation_.solve(right_hand_side_, std::span(pressure_).first(unknowns),
+                                  report.solve)) {
+        std::ranges::copy(pressure_before_, pressure_.begin());
+        return false;
+    }
+    cut_pressure(report);
+    extrapolate_pressure();
+    return true;
 }
 
 /// The disorder of the particles leaves in the source a random axial wave, which the solve would
@@ -299,67 +278,89 @@ void Liquid::remove_axial_bias() {
         1, static_cast<std::size_t>(std::lround(pipe_length_ / (2 * pipe_radius_))));
     const Real width = pipe_length_ / static_cast<Real>(bins);
     std::vector<Real> sum(bins), count(bins);
-    for (std::size_t k = 0; k < particle_.size(); ++k) {
-        if (kind_[particle_[k]] != Kind::liquid) continue;
-        const auto b = std::min(static_cast<std::size_t>(unknown_position_[k].x / width), bins - 1);
-        sum[b] += right_hand_side_[k];
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
+        const auto b =
+            std::min(static_cast<std::size_t>(neighbors_.position(i).x / width), bins - 1);
+        sum[b] += right_hand_side_[i];
         count[b] += 1;
     }
     for (std::size_t b = 0; b < bins; ++b) sum[b] /= std::max(count[b], 1.);
-    parallel_for(particle_.size(), numerics_.threads, [&](std::size_t k) {
-        if (kind_[particle_[k]] != Kind::liquid) return;
-        const Real place = unknown_position_[k].x / width - 0.5;
+    parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
+        const Real place = neighbors_.position(i).x / width - 0.5;
         const Real below = std::floor(place);
         const auto b = static_cast<std::size_t>(below + static_cast<Real>(bins)) % bins;
         const Real share = place - below;
-        right_hand_side_[k] -= (1 - share) * sum[b] + share * sum[(b + 1) % bins];
+        right_hand_side_[i] -= (1 - share) * sum[b] + share * sum[(b + 1) % bins];
+    });
+}
+
+/// Give p' mean zero in the liquid, and cut it to the limit.
+void Liquid::cut_pressure(AdvanceReport& report) {
+    const int threads = numerics_.threads;
+    const auto count = static_cast<Real>(liquid_count_);
+    const Real mean =
+        linear::ordered_sum(liquid_count_, threads, [&](std::size_t i) { return pressure_[i]; }) /
+        count;
+    const Real limit = turbulent() && dynamic_pressure() > 0
+                           ? numerics_.pressure_limit * dynamic_pressure()
+                           : std::numeric_limits<Real>::infinity();
+    for (std::size_t i = 0; i < liquid_count_; ++i)
+        report.clamped += std::abs(pressure_[i] - mean) > limit;
+    parallel_for(pairs_.rows(), threads, [&](std::size_t i) {
+        pressure_[i] = std::clamp(pressure_[i] - mean, -limit, limit);
+    });
+    pressure_noise_ = std::sqrt(linear::ordered_sum(liquid_count_, threads,
+                                                    [&](std::size_t i) {
+                                                        const Real change =
+                                                            pressure_[i] - pressure_before_[i];
+                                                        return change * change;
+                                                    }) /
+                                count);
+}
+
+/// A ghost has the pressure of the wall before it.
+void Liquid::extrapolate_pressure() {
+    const std::size_t first_ghost = liquid_count_ + wall_count_;
+    parallel_for(size() - first_ghost, numerics_.threads, [&](std::size_t g) {
+        Real sum = 0;
+        for (Index k = behind_first_[g]; k < behind_first_[g + 1]; ++k)
+            sum += behind_share_[k] * pressure_[behind_column_[k]];
+        pressure_[first_ghost + g] = sum;
     });
 }
 
 /// Gradient of p', then the mean axial gradient: given, or what holds the bulk velocity.
 void Liquid::correct(Real dt) {
-    const Real scale = density_ * drive_.bulk_velocity * drive_.bulk_velocity;
-    background_gradient(numerics_.background * scale, wall_, reference_, neighbors_, kind_,
-                        pressure_, numerics_.threads, acceleration_);
+    const int threads = numerics_.threads;
+    background_gradient(numerics_.background * dynamic_pressure(), wall_, reference_, pairs_, kind_,
+                        pressure_, threads, acceleration_);
     const Real before = bulk_velocity();
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) velocity_[i] -= (dt / density_) * acceleration_[i];
+    parallel_for(liquid_count_, threads,
+                 [&](std::size_t i) { velocity_[i] -= (dt / density_) * acceleration_[i]; });
     const Real bulk = bulk_velocity();
     unexplained_ = density_ * (bulk - before) / dt;
     gradient_ = drive_.pressure_gradient ? *drive_.pressure_gradient
                                          : density_ * (drive_.bulk_velocity - bulk) / dt;
     const Real kick = dt * gradient_ / density_;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) velocity_[i].x += kick;
+    parallel_for(liquid_count_, threads, [&](std::size_t i) { velocity_[i].x += kick; });
 }
 
 void Liquid::move(Real dt, AdvanceReport& report) {
     const Real dx = numerics_.particle_spacing;
-    const Real scale = -numerics_.shift * dx * dx * dimensions / reference_.number_density;
     const Real longest = longest_shift * dx;
-    shift_.resize(size());
-    density_number_.resize(size());
-    number_density(reference_.weight, neighbors_, numerics_.threads, density_number_);
-    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
-        Vec3 sum;
-        if (kind_[i] == Kind::liquid) {
-            neighbors_.each(i, [&](Index, const Vec3& r) {
-                sum += reference_.weight.over_square(dot(r, r)) * r;
-            });
-        }
-        shift_[i] = scale * sum;
-    });
+    shift_.resize(liquid_count_);
+    shifting(numerics_.shift, reference_, pairs_, numerics_.threads, shift_);
     const Real farthest = pipe_radius_ - nearest_liquid * dx;
-    for (std::size_t i = 0; i < size(); ++i) {
-        if (kind_[i] != Kind::liquid) continue;
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
         const Real length = norm(shift_[i]);
         if (length > longest) ++report.shifts_cut;
         const Vec3 shift = (length > longest ? longest / length : 1) * shift_[i];
         Vec3 x = neighbors_.position(i) + dt * velocity_[i] + shift;
-        const Real r = std::hypot(x.y, x.z);
-        if (r > farthest) {
-            x.y *= farthest / r;
-            x.z *= farthest / r;
+        const Real r2 = x.y * x.y + x.z * x.z;
+        if (r2 > farthest * farthest) {
+            const Real inwards = farthest / std::sqrt(r2);
+            x.y *= inwards;
+            x.z *= inwards;
             ++report.held_back;
         }
         x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
@@ -369,93 +370,58 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     }
 }
 
-namespace {
-
-template <class T>
-std::vector<T> in_given_order(const std::vector<T>& values, const std::vector<Index>& id) {
-    std::vector<T> out(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) out[id[i]] = values[i];
-    return out;
-}
-
-} // namespace
-
-std::vector<Vec3> Liquid::of_liquid(const std::vector<Vec3>& values) const {
-    std::vector<Vec3> out;
-    out.reserve(liquid_count_);
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) out.push_back(values[i]);
-    return out;
-}
-
-std::vector<Vec3> Liquid::liquid_position() const {
-    return of_liquid(position_);
-}
-std::vector<Vec3> Liquid::liquid_velocity() const {
-    return of_liquid(velocity_);
-}
 std::vector<Vec3> Liquid::position() const {
-    return in_given_order(position_, id_);
+    return in_given_order<Vec3>(position_, id_);
 }
 std::vector<Vec3> Liquid::velocity() const {
-    return in_given_order(velocity_, id_);
+    return in_given_order<Vec3>(velocity_, id_);
 }
 std::vector<Kind> Liquid::kind() const {
-    return in_given_order(kind_, id_);
+    return in_given_order<Kind>(kind_, id_);
 }
 std::vector<Real> Liquid::pressure() const {
-    return in_given_order(pressure_, id_);
+    return in_given_order<Real>(pressure_, id_);
 }
 
 Real Liquid::bulk_velocity() const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) sum += velocity_[i].x;
-    return sum / static_cast<Real>(liquid_count_);
+    return linear::ordered_sum(liquid_count_, numerics_.threads,
+                               [&](std::size_t i) { return velocity_[i].x; }) /
+           static_cast<Real>(liquid_count_);
 }
 
 Real Liquid::kinetic_energy() const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) sum += dot(velocity_[i], velocity_[i]) / 2;
-    return sum / static_cast<Real>(liquid_count_);
+    return linear::ordered_sum(liquid_count_, numerics_.threads,
+                               [&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; }) /
+           static_cast<Real>(liquid_count_);
 }
 
 std::vector<Real> Liquid::density_ratio() const {
-    if (density_number_.empty()) return std::vector<Real>(size(), 1);
-    Real mean = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) mean += density_number_[i];
-    mean /= static_cast<Real>(liquid_count_);
-    std::vector<Real> ratio = in_given_order(density_number_, id_);
+    std::vector<Real> ratio(pairs_.rows());
+    number_density(pairs_, numerics_.threads, ratio);
+    const auto last = ratio.begin() + static_cast<std::ptrdiff_t>(liquid_count_);
+    const Real mean =
+        std::accumulate(ratio.begin(), last, Real{0}) / static_cast<Real>(liquid_count_);
     for (Real& r : ratio) r /= mean;
-    return ratio;
+    return in_given_order<Real>(ratio, id_);
 }
 
 Real Liquid::density_scatter() const {
     const std::vector<Real> ratio = density_ratio();
     Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) sum += (ratio[id_[i]] - 1) * (ratio[id_[i]] - 1);
+    for (std::size_t i = 0; i < liquid_count_; ++i)
+        sum += (ratio[id_[i]] - 1) * (ratio[id_[i]] - 1);
     return std::sqrt(sum / static_cast<Real>(liquid_count_));
-}
-
-Liquid::Snapshot Liquid::snapshot() const {
-    Snapshot out{position_, velocity_, pressure_, {}, id_};
-    for (const Kind k : kind_) out.kind.push_back(static_cast<std::int8_t>(k));
-    return out;
 }
 
 void Liquid::restore(const Snapshot& s) {
     require(s.position.size() == size() && s.velocity.size() == size() &&
-                s.pressure.size() == size() && s.kind.size() == size() && s.id.size() == size(),
+                s.pressure.size() == size() && s.id.size() == size(),
             "restore: the snapshot belongs to another liquid");
     position_ = s.position;
     velocity_ = s.velocity;
     pressure_ = s.pressure;
     id_ = s.id;
-    for (std::size_t i = 0; i < size(); ++i) kind_[i] = static_cast<Kind>(s.kind[i]);
-    preconditioner_.reset();
+    find_pairs();
 }
 
 } // namespace mpsdem::mps::lagrangian

@@ -1,21 +1,23 @@
 #pragma once
 
 #include "geometry/cylinder.hpp"
-#include "linear/conjugate_gradients.hpp"
-#include "linear/two_level.hpp"
 #include "mps/kind.hpp"
+#include "mps/lagrangian/pressure_equation.hpp"
 #include "mps/reference_density.hpp"
 #include "mps/turbulence.hpp"
 #include "mps/wall_function.hpp"
-#include "neighbors/neighbor_list.hpp"
 
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace mpsdem::mps::lagrangian {
 
-enum class Flow { laminar, turbulent };
+/// Laminar with a wall that holds the liquid; or an eddy viscosity of some length, with the log law
+/// at the wall.
+struct Laminar {};
+using Flow = std::variant<Laminar, MixingLength, Smagorinsky>;
 
 /// What drives the liquid along the pipe.
 struct Drive {
@@ -32,16 +34,15 @@ struct Numerics {
     Real background = 0.02;     // [-] p_b over rho U^2
     Real shift = 0.1;           // [-] of the spacing squared, times the gradient of concentration
     Real pressure_limit = 0.25; // [-] largest |p'| over rho U^2; beyond it, clamped and counted
+    Solver solver = Solver::two_level;
     int threads = 1;
 };
 
 /// What a call of Liquid::advance met, over its substeps.
 struct AdvanceReport {
     int substeps = 0;
-    int iterations = 0;      // of the pressure equation, all substeps
-    int retries = 0;         // pressure solves that had to start anew
-    int halvings = 0;        // substeps halved after a failed solve
-    Real residual = 0;       // [-] largest
+    int halvings = 0; // substeps halved after a failed solve
+    SolveTally solve;
     Real mean_gradient = 0;  // [Pa/m] loss of pressure along the pipe, mean over the call
     Real friction = 0;       // [Pa/m] that walls and viscosity take up, mean over the call
     Real unexplained = 0;    // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
@@ -50,7 +51,6 @@ struct AdvanceReport {
     std::size_t shifts_cut = 0;       // shifts cut to their longest
     std::size_t deficient = 0;        // particles whose neighbors fix no Laplacian: no viscosity
     std::size_t held_back = 0; // particles kept from going nearer to the wall than 0.3 spacings
-    Real solve_seconds = 0;    // [s] in the pressure equation, set-up included
     bool sound = true;         // false: the pressure could not be solved, or speeds overflowed
 };
 
@@ -85,8 +85,12 @@ public:
     void drive(const Drive& drive) { drive_ = drive; }
 
     /// The liquid's own particles, without wall and ghosts, in one order.
-    [[nodiscard]] std::vector<Vec3> liquid_position() const; // [m]
-    [[nodiscard]] std::vector<Vec3> liquid_velocity() const; // [m/s]
+    [[nodiscard]] std::span<const Vec3> liquid_position() const noexcept { // [m]
+        return std::span(position_).first(liquid_count_);
+    }
+    [[nodiscard]] std::span<const Vec3> liquid_velocity() const noexcept { // [m/s]
+        return std::span(velocity_).first(liquid_count_);
+    }
     [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }
 
     [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
@@ -109,23 +113,27 @@ public:
     struct Snapshot {
         std::vector<Vec3> position, velocity;
         std::vector<Real> pressure;
-        std::vector<std::int8_t> kind;
         std::vector<Index> id;
     };
-    [[nodiscard]] Snapshot snapshot() const;
+    [[nodiscard]] Snapshot snapshot() const { return {position_, velocity_, pressure_, id_}; }
     void restore(const Snapshot& snapshot);
 
 private:
+    [[nodiscard]] bool turbulent() const noexcept {
+        return !std::holds_alternative<Laminar>(flow_);
+    }
+    [[nodiscard]] Real dynamic_pressure() const noexcept; // [Pa] rho U^2
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report);
     void sort();
+    void find_pairs();
     void predict(Real dt, AdvanceReport& report);
-    [[nodiscard]] std::vector<Vec3> of_liquid(const std::vector<Vec3>& values) const;
+    void find_eddy_viscosity(Real dt, AdvanceReport& report);
     void add_wall_shear();
-    [[nodiscard]] bool solve_pressure(AdvanceReport& report);
-    void take_pressure(AdvanceReport& report);
-    void assemble(Real dt);
+    [[nodiscard]] bool solve_pressure(Real dt, AdvanceReport& report);
     void remove_axial_bias();
+    void cut_pressure(AdvanceReport& report);
+    void extrapolate_pressure();
     void correct(Real dt);
     void move(Real dt, AdvanceReport& report);
 
@@ -138,25 +146,28 @@ private:
     Numerics numerics_;
     ReferenceDensity reference_;
     WallFunction wall_function_;
-    MixingLength mixing_length_;
     neighbors::NeighborList neighbors_;
-    std::size_t liquid_count_ = 0;
+    neighbors::Cells cells_; // over the walls and ghosts, which stay
+    neighbors::CellGrid grid_;
+    StoredPairs pairs_;
+    PressureEquation pressure_equation_;
 
+    // Particles in the order liquid, wall, ghosts, each sorted by cells; walls and ghosts for good.
+    std::size_t liquid_count_ = 0, wall_count_ = 0;
     std::vector<Vec3> position_, velocity_;
     std::vector<Kind> kind_;
-    std::vector<Real> pressure_; // [Pa] p'; of a ghost, its neighbors' on the wall
-    std::vector<Index> id_;
+    std::vector<Real> pressure_; // [Pa] p'
+    std::vector<Index> id_;      // place in the order they were given
 
+    // Of each ghost, the wall particles in reach.
+    std::vector<Index> behind_first_, behind_column_;
+    std::vector<Real> behind_share_; // [-] of their pressures
+
+    // Memory of a step.
+    std::vector<Vec3> acceleration_, shift_, velocity_before_;
+    std::vector<Real> scalar_, eddy_viscosity_, right_hand_side_, pressure_before_;
     std::vector<std::uint8_t> deficient_;
-    std::vector<Vec3> acceleration_, shift_;
-    std::vector<Real> scalar_, eddy_viscosity_, density_number_;
-    std::vector<Index> unknown_;  // by particle, or none for ghosts
-    std::vector<Index> particle_; // by unknown
-    std::vector<Index> row_, column_;
-    std::vector<float> weight_;
-    std::vector<Real> right_hand_side_, solution_;
-    std::vector<Vec3> unknown_position_;
-    std::optional<linear::TwoLevelAdditive> preconditioner_;
+    std::vector<Index> order_, id_memory_;
 
     Real gradient_ = 0, friction_ = 0, unexplained_ = 0, wall_shear_ = 0, pressure_noise_ = 0;
 };

@@ -156,7 +156,7 @@ class TwoLevelAdditive:
         -------
         (n,) float64 ndarray
         """
-    def follow(self, matrix: LaplacianMatrix, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+    def follow(self, matrix: LaplacianMatrix, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         """
         Take a later matrix, keeping the cells and their factor.
         
@@ -168,6 +168,8 @@ class TwoLevelAdditive:
             Its unknowns may differ in number and order from those before.
         position : (n, 3) float64 ndarray
             Of its unknowns [m].
+        threads : int
+            The result does not depend on it.
         """
     @property
     def coarse_size(self) -> int:

@@ -301,14 +301,17 @@ class LagrangianLiquid:
         [kg/m3], [m2/s].
     roughness : float
         Of the wall [m].
-    turbulent : bool
-        Mixing length and log-law wall function; else laminar with no-slip walls.
+    turbulence : MixingLength or Smagorinsky or None
+        Length of the eddy viscosity, with the log law at the wall; None for laminar flow between walls
+        that hold the liquid.
     bulk_velocity : float
         Held each step unless a gradient is given; scales the pressure limits in any case [m/s].
     pressure_gradient : float, optional
         Given loss of pressure along the pipe [Pa/m].
     courant, tolerance, background, shift, pressure_limit : float
         Numbers of the method [-].
+    solver : {"two_level", "jacobi", "cholmod"}
+        Of the pressure equation: conjugate gradients, or a factor each step where the build has it.
     threads : int
         The results do not depend on it.
     
@@ -316,7 +319,7 @@ class LagrangianLiquid:
     ----------
     Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
     """
-    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulent: bool, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.1, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.1, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         ...
     def __len__(self) -> int:
         ...
