@@ -7,6 +7,7 @@
 #include "mps/least_squares_laplacian.hpp"
 #include "mps/number_density.hpp"
 #include "mps/shear_rate.hpp"
+#include "mps/shifting.hpp"
 #include "mps/turbulence.hpp"
 #include "mps/viscosity.hpp"
 #include "mps/wall_function.hpp"
@@ -115,8 +116,8 @@ Array<Real> background_gradient(const NeighborList& neighbors, const ReferenceDe
         std::visit(
             [&](const auto* wall) {
                 mps::background_gradient(background, *wall, reference,
-                                         EvaluatedPairs(neighbors, reference.weight),
-                                         std::span<const Kind>(kinds), p, threads, result);
+                                         EvaluatedPairs(neighbors, reference.weight, kinds), p,
+                                         threads, result);
             },
             any);
     });
@@ -140,8 +141,9 @@ Array<Real> slip_divergence(const NeighborList& neighbors, const ReferenceDensit
     return filled<Real>(u.size(), [&](auto result) {
         std::visit(
             [&](const auto* wall) {
-                mps::slip_divergence(*wall, reference, EvaluatedPairs(neighbors, reference.weight),
-                                     std::span<const Kind>(kinds), u, threads, result);
+                mps::slip_divergence(*wall, reference,
+                                     EvaluatedPairs(neighbors, reference.weight, kinds), u, threads,
+                                     result);
             },
             any);
     });
@@ -189,7 +191,7 @@ Array<Real> viscous_acceleration(const NeighborList& neighbors, const ReferenceD
     const auto nu = scalars_of(neighbors, viscosity, "viscosity");
     const auto kinds = kinds_of(neighbors, kind);
     return filled<Vec3>(u.size(), [&](auto result) {
-        mps::viscous_acceleration(reference, EvaluatedPairs(neighbors, reference.weight), kinds, nu,
+        mps::viscous_acceleration(reference, EvaluatedPairs(neighbors, reference.weight, kinds), nu,
                                   u, threads, result);
     });
 }
@@ -200,8 +202,32 @@ Array<Real> shear_rate(const NeighborList& neighbors, const ReferenceDensity& re
     const auto u = vectors_of(neighbors, velocity, "velocity");
     const auto kinds = kinds_of(neighbors, kind);
     return filled<Real>(u.size(), [&](auto result) {
-        mps::shear_rate(EvaluatedPairs(neighbors, reference.weight), kinds, u, threads, result);
+        mps::shear_rate(EvaluatedPairs(neighbors, reference.weight, kinds), u, threads, result);
     });
+}
+
+Array<Real> shifting(const NeighborList& neighbors, const ReferenceDensity& reference,
+                     Real coefficient, int threads) {
+    require_reach(neighbors, reference.weight);
+    return filled<Vec3>(neighbors.size(), [&](auto result) {
+        mps::shifting(coefficient, reference, EvaluatedPairs(neighbors, reference.weight), threads,
+                      result);
+    });
+}
+
+std::pair<Array<Real>, Array<Real>> stored_weights(const Array<Real>& position,
+                                                   const ReferenceDensity& reference, Real period) {
+    const auto x = vectors(position, "position");
+    mps::StoredPairs pairs(reference.weight, period);
+    pairs.find(x, {{x.size()}, x.size()}, 1);
+    std::vector<Real> weight, over_square;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        pairs.each<mps::Among::all>(i, [&](const mps::Pair& pair) {
+            weight.push_back(pair.weight);
+            over_square.push_back(pair.over_square);
+        });
+    }
+    return {array(weight), array(over_square)};
 }
 
 Array<Real> eddy_viscosity(const AnyLengthModel& any, const Array<Real>& position,
@@ -271,6 +297,45 @@ Returns
 References
 ----------
 Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+)");
+    m.def("shifting", &shifting, "neighbors"_a, "reference"_a, py::kw_only(), "coefficient"_a,
+          "threads"_a = 1,
+          R"(Where particles should go for their neighborhoods to be even.
+
+Parameters
+----------
+neighbors : NeighborList
+reference : ReferenceDensity
+coefficient : float
+    Of the spacing squared times the gradient of concentration [-]; 0.1 each step holds.
+threads : int
+    The result does not depend on it.
+
+Returns
+-------
+(n, 3) float64 ndarray
+    [m]
+
+References
+----------
+Xu, Stansby & Laurence (2009), doi:10.1016/j.jcp.2009.05.032.
+)");
+    m.def("stored_weights", &stored_weights, "position"_a, "reference"_a, py::kw_only(),
+          "period"_a = 0.0,
+          R"(The weights as the particle liquid keeps them, rounded to float32.
+
+Parameters
+----------
+position : (n, 3) float64 ndarray
+    [m]
+reference : ReferenceDensity
+period : float
+    Along x [m]; 0 for none.
+
+Returns
+-------
+(m,) float64 ndarray, (m,) float64 ndarray
+    W [-] and W / r^2 [1/m2] of the neighbors, in the order of a `NeighborList`.
 )");
     m.def("sum_gradient", &gradient<mps::SumForm>, "neighbors"_a, "reference"_a, "pressure"_a,
           py::kw_only(), "threads"_a = 1,
@@ -415,7 +480,7 @@ threads : int
 Returns
 -------
 (n,) float64 ndarray
-    [1/s]; 0 at ghosts.
+    [1/s]
 )");
 }
 

@@ -86,6 +86,21 @@ struct Rows {
     return condition ? yes : no;
 }
 
+/// Lane k from values[place[k]].
+[[nodiscard]] [[gnu::always_inline]] inline Vector<Lanes> gather(const Vec3* values,
+                                                                 const Index* place) noexcept {
+    const auto row = [&](std::size_t k) {
+        const Vec3& v = values[place[k]];
+        return Lanes{v.x, v.y, v.z, 0};
+    };
+    return turned(row(0), row(1), row(2), row(3)).v;
+}
+
+/// The same vector in every lane.
+[[nodiscard]] [[gnu::always_inline]] inline Vector<Lanes> broadcast(const Vec3& v) noexcept {
+    return {Lanes{} + v.x, Lanes{} + v.y, Lanes{} + v.z};
+}
+
 /// Bit k is set where lane k holds.
 [[nodiscard]] [[gnu::always_inline]] inline unsigned bits(LaneMask condition) noexcept {
 #if defined(__AVX__)
@@ -130,6 +145,9 @@ template <class T, class Condition>
     Real total = a[0];
     for (std::size_t k = 1; k < lane_count; ++k) total += a[k];
     return total;
+}
+[[nodiscard]] [[gnu::always_inline]] inline Vec3 sum(const Vector<Lanes>& a) noexcept {
+    return {sum(a.x), sum(a.y), sum(a.z)};
 }
 
 } // namespace mpsdem

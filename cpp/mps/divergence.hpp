@@ -2,7 +2,6 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
-#include "mps/kind.hpp"
 #include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
 
@@ -18,12 +17,12 @@ namespace mpsdem::mps {
 void divergence(const ReferenceDensity& reference, const Pairs auto& pairs,
                 std::span<const Vec3> velocity, int threads, std::span<Real> result) {
     const Real scale = dimensions / reference.number_density;
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
-        Real sum = 0;
-        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
-            sum += factor * dot(velocity[j] - velocity[i], r);
-        });
-        result[i] = scale * sum;
+    parallel_for(result.size(), threads, [&](std::size_t i) {
+        const auto own = broadcast(velocity[i]);
+        Lanes sum{};
+        pairs.template fours<Among::all>(
+            i, [&](const FourPairs& p) { sum += p.over_square * dot(p.of(velocity) - own, p.r); });
+        result[i] = scale * mpsdem::sum(sum);
     });
 }
 
@@ -37,33 +36,38 @@ inline constexpr Real nearest_liquid = 0.3; // [-] spacings from the wall, as ne
 /// the normal velocity mirrored in the wall, n its normal at a, d the distances from it. Only the
 /// velocity through the wall counts, so plug flow and rotation about the axis have no divergence.
 /// Exact for a normal velocity linear in the distance, where k is not cut. Pairs of wall and ghost
-/// particles count nothing, and a ghost's own sum is 0.
+/// particles among themselves count nothing.
 template <geometry::Surface Wall>
 void slip_divergence(const Wall& wall, const ReferenceDensity& reference, const Pairs auto& pairs,
-                     std::span<const Kind> kind, std::span<const Vec3> velocity, int threads,
-                     std::span<Real> result) {
+                     std::span<const Vec3> velocity, int threads, std::span<Real> result) {
     const Real scale = dimensions / reference.number_density;
     const Real least = nearest_liquid * reference.spacing;
-    const auto mirrored = [&](std::size_t liquid, std::size_t solid) {
-        const auto at = wall.at(pairs.position(liquid));
-        const Real depth = -wall.at(pairs.position(solid)).distance;
-        const Real k = std::min(1 + depth / std::max(at.distance, least), Real{3});
-        return (-k * dot(velocity[liquid] - velocity[solid], at.normal)) * at.normal;
+    const auto mirror = [&](Lanes depth, Lanes distance) {
+        const Lanes k = Lanes{} + 1 + depth / max(distance, Lanes{} + least);
+        return -max(-k, Lanes{} - 3);
     };
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
-        Real sum = 0;
-        const bool liquid = kind[i] == Kind::liquid;
-        if (kind[i] != Kind::ghost) {
-            pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
-                const bool other = kind[j] == Kind::liquid;
-                if (!liquid && !other) return;
-                const Vec3 du = liquid && other ? velocity[j] - velocity[i]
-                                : liquid        ? mirrored(i, j)
-                                                : -mirrored(j, i);
-                sum += factor * dot(du, r);
+    parallel_for(result.size(), threads, [&](std::size_t i) {
+        const auto own = broadcast(velocity[i]), here = broadcast(pairs.position(i));
+        const auto at = wall.at(pairs.position(i));
+        const auto n = broadcast(at.normal);
+        Lanes sum{};
+        if (pairs.liquid(i)) {
+            pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {
+                sum += p.over_square * dot(p.of(velocity) - own, p.r);
+            });
+            pairs.template fours<Among::solid>(i, [&](const FourPairs& p) {
+                const Lanes k = mirror(-wall.at(here + p.r).distance, Lanes{} + at.distance);
+                sum += p.over_square * k * dot(p.of(velocity) - own, n) * dot(n, p.r);
+            });
+        } else {
+            pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {
+                const auto there = wall.at(here + p.r);
+                const Lanes k = mirror(Lanes{} - at.distance, there.distance);
+                sum += p.over_square * k * dot(p.of(velocity) - own, there.normal) *
+                       dot(there.normal, p.r);
             });
         }
-        result[i] = scale * sum;
+        result[i] = scale * mpsdem::sum(sum);
     });
 }
 

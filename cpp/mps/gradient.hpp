@@ -2,7 +2,6 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
-#include "mps/kind.hpp"
 #include "mps/moment.hpp"
 #include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
@@ -35,10 +34,10 @@ template <GradientForm Form>
 void gradient(const Form& form, const ReferenceDensity& reference, const Pairs auto& pairs,
               std::span<const Real> pressure, int threads, std::span<Vec3> result) {
     const Real scale = dimensions / reference.number_density;
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
+    parallel_for(result.size(), threads, [&](std::size_t i) {
         Vec3 sum;
-        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
-            sum += (factor * form(pressure[i], pressure[j])) * r;
+        pairs.template each<Among::all>(i, [&](const Pair& p) {
+            sum += (p.over_square * form(pressure[i], pressure[p.j])) * p.r;
         });
         result[i] = scale * sum;
     });
@@ -49,12 +48,12 @@ void gradient(const Form& form, const ReferenceDensity& reference, const Pairs a
 /// without dissipation elsewhere. Source: Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
 void corrected_gradient(const ReferenceDensity& reference, const Pairs auto& pairs,
                         std::span<const Real> pressure, int threads, std::span<Vec3> result) {
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
+    parallel_for(result.size(), threads, [&](std::size_t i) {
         Vec3 sum;
-        Moment moment;
-        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
-            sum += (factor * (pressure[j] - pressure[i])) * r;
-            moment.add(factor, r);
+        Moment<Real> moment;
+        pairs.template each<Among::all>(i, [&](const Pair& p) {
+            sum += (p.over_square * (pressure[p.j] - pressure[i])) * p.r;
+            moment.add(p.over_square, p.r);
         });
         result[i] =
             moment.flat() ? (dimensions / reference.number_density) * sum : moment.solve(sum);
@@ -66,22 +65,39 @@ void corrected_gradient(const ReferenceDensity& reference, const Pairs auto& pai
 ///
 ///   (p_j - p_i) r_ij + 2 p_b (r_ij . n) n
 ///
-/// The background p_b [Pa] spreads the particles evenly; along the wall it would drag. 0.02 rho U^2
-/// holds the scatter of the density near 0.02 at the price of 3 % in friction; p_b must stay below
-/// 0.2 rho (dx/dt)^2. n is the wall's at particle i.
+/// between walls and ghosts as between liquid. The background p_b [Pa] spreads the particles
+/// evenly; along the wall it would drag. 0.02 rho U^2 holds the scatter of the density near 0.02 at
+/// the price of 3 % in friction; p_b must stay below 0.2 rho (dx/dt)^2. n is the wall's at particle
+/// i.
 template <geometry::Surface Wall>
 void background_gradient(Real background, const Wall& wall, const ReferenceDensity& reference,
-                         const Pairs auto& pairs, std::span<const Kind> kind,
-                         std::span<const Real> pressure, int threads, std::span<Vec3> result) {
+                         const Pairs auto& pairs, std::span<const Real> pressure, int threads,
+                         std::span<Vec3> result) {
     const Real scale = dimensions / reference.number_density;
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
-        const Vec3 n = wall.at(pairs.position(i)).normal;
-        Vec3 sum, push;
-        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
-            sum += (factor * (pressure[j] - pressure[i])) * r;
-            push += kind[j] == kind[i] ? factor * r : (factor * dot(r, n)) * n;
-        });
-        result[i] = scale * (sum + (2 * background) * push);
+    parallel_for(result.size(), threads, [&](std::size_t i) {
+        const Lanes own = Lanes{} + pressure[i], twice = Lanes{} + 2 * background;
+        const auto difference = [&](const FourPairs& p) {
+            return p.over_square * (p.of(pressure) - own);
+        };
+        Vector<Lanes> sum;
+        Lanes push{}; // along the normal
+        const Vec3 normal = wall.at(pairs.position(i)).normal;
+        const auto n = broadcast(normal);
+        const auto alike = [&](const FourPairs& p) {
+            sum += (difference(p) + twice * p.over_square) * p.r;
+        };
+        const auto unlike = [&](const FourPairs& p) {
+            sum += difference(p) * p.r;
+            push += twice * p.over_square * dot(p.r, n);
+        };
+        if (pairs.liquid(i)) {
+            pairs.template fours<Among::liquid>(i, alike);
+            pairs.template fours<Among::solid>(i, unlike);
+        } else {
+            pairs.template fours<Among::liquid>(i, unlike);
+            pairs.template fours<Among::solid>(i, alike);
+        }
+        result[i] = scale * (mpsdem::sum(sum) + mpsdem::sum(push) * normal);
     });
 }
 

@@ -15,10 +15,10 @@ template <class T>
 void laplacian(const ReferenceDensity& reference, const Pairs auto& pairs, std::span<const T> field,
                int threads, std::span<T> result) {
     const Real scale = 2 * dimensions / (reference.number_density * reference.lambda);
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
+    parallel_for(result.size(), threads, [&](std::size_t i) {
         T sum{};
-        pairs.each(i,
-                   [&](Index j, const Vec3&, Real w, Real) { sum += w * (field[j] - field[i]); });
+        pairs.template each<Among::all>(
+            i, [&](const Pair& p) { sum += p.weight * (field[p.j] - field[i]); });
         result[i] = scale * sum;
     });
 }

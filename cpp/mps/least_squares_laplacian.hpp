@@ -50,7 +50,7 @@ void least_squares_laplacian(const Wall& wall, const neighbors::NeighborList& ne
         });
     };
 
-    parallel_for(neighbors.rows(), threads, [&](std::size_t i) {
+    parallel_for(result.size(), threads, [&](std::size_t i) {
         result[i] = T{};
         deficient[i] = 0;
         if (kind[i] != Kind::liquid) return;

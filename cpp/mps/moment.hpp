@@ -1,22 +1,26 @@
 #pragma once
 
-#include "core/vec3.hpp"
+#include "core/lanes.hpp"
 
 namespace mpsdem::mps {
 
 /// The symmetric matrix M = sum_j W r r^T / r^2 of a neighborhood. M^-1 corrects a first-order
 /// operator, so that it is exact for linear fields wherever the neighbors are.
 /// Source: Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
+/// T is Real, or Lanes for one sum in each lane.
+template <class T>
 struct Moment {
-    Real xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+    T xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
 
-    void add(Real factor, const Vec3& r) noexcept {
-        xx += factor * r.x * r.x;
-        yy += factor * r.y * r.y;
-        zz += factor * r.z * r.z;
-        xy += factor * r.x * r.y;
-        xz += factor * r.x * r.z;
-        yz += factor * r.y * r.z;
+    void add(T factor, const Vector<T>& r) noexcept { add(factor * r, r); }
+    /// The same with `weighted`, the factor times r, at hand.
+    void add(const Vector<T>& weighted, const Vector<T>& r) noexcept {
+        xx += weighted.x * r.x;
+        yy += weighted.y * r.y;
+        zz += weighted.z * r.z;
+        xy += weighted.x * r.y;
+        xz += weighted.x * r.z;
+        yz += weighted.y * r.z;
     }
     [[nodiscard]] Real determinant() const noexcept {
         return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
@@ -41,5 +45,11 @@ struct Moment {
 private:
     static constexpr Real flat_limit = 1e-4; // [-] determinant over that of a full neighborhood
 };
+
+/// Of all lanes.
+[[nodiscard]] inline Moment<Real> sum(const Moment<Lanes>& m) noexcept {
+    using mpsdem::sum;
+    return {sum(m.xx), sum(m.yy), sum(m.zz), sum(m.xy), sum(m.xz), sum(m.yz)};
+}
 
 } // namespace mpsdem::mps

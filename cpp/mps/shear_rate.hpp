@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/parallel.hpp"
-#include "mps/kind.hpp"
 #include "mps/moment.hpp"
 #include "mps/pairs.hpp"
 
@@ -14,23 +13,24 @@ namespace mpsdem::mps {
 /// Exact for linear velocities, and zero in rotation, wherever the neighbors are; walls do not
 /// count, as liquid slips along them in the coarse view. 0 where the neighbors are too few.
 /// Source: the moment M after Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
-void shear_rate(const Pairs auto& pairs, std::span<const Kind> kind, std::span<const Vec3> velocity,
-                int threads, std::span<Real> result) {
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
+void shear_rate(const Pairs auto& pairs, std::span<const Vec3> velocity, int threads,
+                std::span<Real> result) {
+    parallel_for(result.size(), threads, [&](std::size_t i) {
         result[i] = 0;
-        if (kind[i] != Kind::liquid) return;
-        Moment moment;
-        Vec3 x, y, z; // sums of each component of the velocity
-        pairs.each(i, [&](Index j, const Vec3& r, Real, Real factor) {
-            if (kind[j] != Kind::liquid) return;
-            const Vec3 du = velocity[j] - velocity[i];
-            moment.add(factor, r);
-            x += (factor * du.x) * r;
-            y += (factor * du.y) * r;
-            z += (factor * du.z) * r;
+        if (!pairs.liquid(i)) return;
+        const auto own = broadcast(velocity[i]);
+        Moment<Lanes> moments;
+        Vector<Lanes> x, y, z; // sums of each component of the velocity
+        pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {
+            const Vector<Lanes> du = p.of(velocity) - own, wr = p.over_square * p.r;
+            moments.add(wr, p.r);
+            x += du.x * wr;
+            y += du.y * wr;
+            z += du.z * wr;
         });
+        const Moment<Real> moment = sum(moments);
         if (moment.flat()) return;
-        const Vec3 gx = moment.solve(x), gy = moment.solve(y), gz = moment.solve(z);
+        const Vec3 gx = moment.solve(sum(x)), gy = moment.solve(sum(y)), gz = moment.solve(sum(z));
         const Real xy = gx.y + gy.x, xz = gx.z + gz.x, yz = gy.z + gz.y;
         result[i] =
             std::sqrt(2 * (gx.x * gx.x + gy.y * gy.y + gz.z * gz.z) + xy * xy + xz * xz + yz * yz);

@@ -18,9 +18,10 @@ void shifting(Real coefficient, const ReferenceDensity& reference, const Pairs a
     const Real scale = -coefficient * reference.spacing * reference.spacing * dimensions /
                        reference.number_density;
     parallel_for(shift.size(), threads, [&](std::size_t i) {
-        Vec3 sum;
-        pairs.each(i, [&](Index, const Vec3& r, Real, Real factor) { sum += factor * r; });
-        shift[i] = scale * sum;
+        Vector<Lanes> sum;
+        pairs.template fours<Among::all>(i,
+                                         [&](const FourPairs& p) { sum += p.over_square * p.r; });
+        shift[i] = scale * mpsdem::sum(sum);
     });
 }
 

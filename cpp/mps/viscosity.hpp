@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/parallel.hpp"
-#include "mps/kind.hpp"
 #include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
 
@@ -16,19 +15,18 @@ namespace mpsdem::mps {
 /// 0.3 dx^2 / nu.
 /// Source: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205, with a viscosity that varies.
 void viscous_acceleration(const ReferenceDensity& reference, const Pairs auto& pairs,
-                          std::span<const Kind> kind, std::span<const Real> viscosity,
-                          std::span<const Vec3> velocity, int threads,
-                          std::span<Vec3> acceleration) {
+                          std::span<const Real> viscosity, std::span<const Vec3> velocity,
+                          int threads, std::span<Vec3> acceleration) {
     const Real scale = dimensions / (reference.number_density * reference.lambda);
-    parallel_for(pairs.rows(), threads, [&](std::size_t i) {
-        Vec3 sum;
-        if (kind[i] == Kind::liquid) {
-            pairs.each(i, [&](Index j, const Vec3&, Real w, Real) {
-                if (kind[j] != Kind::liquid) return;
-                sum += (w * (viscosity[i] + viscosity[j])) * (velocity[j] - velocity[i]);
+    parallel_for(acceleration.size(), threads, [&](std::size_t i) {
+        Vector<Lanes> sum;
+        if (pairs.liquid(i)) {
+            const auto own = broadcast(velocity[i]);
+            pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {
+                sum += (p.weight * (p.of(viscosity) + viscosity[i])) * (p.of(velocity) - own);
             });
         }
-        acceleration[i] = scale * sum;
+        acceleration[i] = scale * mpsdem::sum(sum);
     });
 }
 

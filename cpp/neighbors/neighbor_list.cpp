@@ -19,7 +19,7 @@ constexpr std::size_t least_row_room = 48;    // of the 38 that a lattice has wi
 constexpr Real grains = 1 << 20;              // [-] of a radius
 constexpr float square_of_radius = 1LL << 40; // [grains2]
 constexpr float rounding = 5e-6F * square_of_radius; // [grains2] of a square near that
-constexpr Real exact_below = 1 << 23; // [grains] differences of less are exact in float32
+constexpr Real widest_exact_cell = 3; // [-] radii: differences below 2^23 grains are exact
 constexpr float nowhere = 1e30F;      // [grains]
 
 void require_finite(std::span<const Vec3> position) {
@@ -64,20 +64,23 @@ NeighborList::NeighborList(Real radius, Real period) : radius_(radius), period_(
 }
 
 void NeighborList::find(std::span<const Vec3> position, int threads) {
-    find(position, {{position.size()}, position.size()}, threads);
+    struct Nothing {
+        void reserve(std::size_t) {}
+        void operator()(Index, std::span<const float>) const {}
+    };
+    find(position, {{position.size()}, position.size()}, threads, Nothing{});
 }
 
-void NeighborList::find(std::span<const Vec3> position, const Groups& groups, int threads) {
+void NeighborList::prepare(std::span<const Vec3> position, const Groups& groups, int threads) {
     require(position.size() < std::numeric_limits<Index>::max(),
             "NeighborList: position must have fewer than 2^32 rows");
     require_finite(position);
     wrap(position, period_, threads, position_);
     const Cells cells(position_, radius_, period_);
+    exact_ = std::ranges::all_of(
+        cells.inverse, [&](Real inverse) { return inverse * radius_ * widest_exact_cell >= 1; });
     group_.resize(groups.group.size(), {CellGrid(radius_, period_), {}, {}, {}, {}});
-    struct Block {
-        std::size_t group, first, last; // places
-    };
-    std::vector<Block> blocks;
+    blocks_.clear();
     std::size_t points = 0;
     for (std::size_t g = 0; g < group_.size(); ++g) {
         const std::size_t count = groups.group[g];
@@ -85,28 +88,14 @@ void NeighborList::find(std::span<const Vec3> position, const Groups& groups, in
         points += count;
         if (points > groups.rows) continue;
         for (std::size_t k = 0; k < count; k += block_rows)
-            blocks.push_back({g, k, std::min(count, k + block_rows)});
+            blocks_.push_back({g, k, std::min(count, k + block_rows)});
     }
     require(points == position.size(), "NeighborList: the groups must have all points");
-
     first_.resize(groups.rows);
     inner_.resize(groups.rows);
     last_.resize(groups.rows);
-    candidates_.resize(std::max(candidates_.size(), blocks.size()));
-    row_room_ = std::max(row_room_, least_row_room);
-    std::vector<char> fits(blocks.size(), 0);
-    while (std::ranges::find(fits, 0) != fits.end()) {
-        const std::size_t room = row_room_ * block_rows;
-        reserve(room * blocks.size());
-        parallel_for_blocks(blocks.size(), threads, [&](std::size_t b) {
-            const auto [g, first, last] = blocks[b];
-            fits[b] = static_cast<char>(search(group_[g], first, last, candidates_[b],
-                                               static_cast<Index>(b * room),
-                                               static_cast<Index>((b + 1) * room)));
-        });
-        row_room_ += row_room_ / 2;
-    }
-    row_room_ = blocks.empty() ? 0 : entries_ / (block_rows * blocks.size());
+    candidates_.resize(std::max(candidates_.size(), blocks_.size()));
+    tight_ = false;
 }
 
 void NeighborList::sort_group(Sorted& sorted, const Cells& cells, std::size_t first,
@@ -124,80 +113,81 @@ void NeighborList::sort_group(Sorted& sorted, const Cells& cells, std::size_t fi
     });
 }
 
-void NeighborList::reserve(std::size_t entries) {
-    require(entries <= std::numeric_limits<Index>::max(),
+std::size_t NeighborList::make_room() {
+    row_room_ = tight_ ? row_room_ + row_room_ / 2 : std::max(row_room_, least_row_room);
+    tight_ = true;
+    const std::size_t room = row_room_ * block_rows;
+    entries_ = room * blocks_.size();
+    require(entries_ <= std::numeric_limits<Index>::max(),
             "NeighborList: more than 2^32 pairs; is radius too large?");
-    entries_ = entries;
-    if (entries <= capacity_) return;
-    // memory that is never written to is never taken: the gaps cost nothing
-    column_ = std::make_unique_for_overwrite<Index[]>(entries);
-    square_ = std::make_unique_for_overwrite<float[]>(entries);
-    capacity_ = entries;
+    if (entries_ > capacity_) {
+        // memory that is never written to is never taken: the gaps cost nothing
+        column_ = std::make_unique_for_overwrite<Index[]>(entries_);
+        capacity_ = entries_;
+    }
+    return room;
 }
 
-/// Find the rows of the points in some places of a group, to be written to [begin, end); false
-/// where they do not fit.
-bool NeighborList::search(const Sorted& group, std::size_t first, std::size_t last,
-                          Candidates& candidates, Index begin, Index end) {
-    Index next = begin;
-    for (std::size_t k = first; k < last; ++k) {
-        if (k == first || group.grid.cell(k) != group.grid.cell(k - 1))
-            gather(group, k, candidates);
-        const Index i = group.order[k];
-        const Vec3 centre{group.x[k], group.y[k], group.z[k]};
-        first_[i] = next;
-        if (!keep_near(candidates, 0, candidates.inner, i, centre, end, next)) return false;
-        inner_[i] = next;
-        if (!keep_near(candidates, candidates.outer, candidates.count, i, centre, end, next))
-            return false;
-        last_[i] = next;
-    }
+bool NeighborList::find_row(const Sorted& group, std::size_t place, Candidates& candidates,
+                            Index cell_begin, Index end, Index& next) {
+    const Index i = group.order[place];
+    const Vec3 centre{group.x[place], group.y[place], group.z[place]};
+    candidates.square.resize(
+        std::max(candidates.square.size(), next - cell_begin + candidates.count + octet_count));
+    first_[i] = next;
+    if (!keep_near(candidates, 0, candidates.inner, i, centre, cell_begin, end, next)) return false;
+    inner_[i] = next;
+    if (!keep_near(candidates, candidates.outer, candidates.count, i, centre, cell_begin, end,
+                   next))
+        return false;
+    last_[i] = next;
     return true;
 }
 
 /// Collect what is in the cells around the cell of a place.
-void NeighborList::gather(const Sorted& group, std::size_t place, Candidates& candidates) {
+void NeighborList::collect(const Sorted& group, std::size_t place, Candidates& candidates) {
     const Vec3 origin{group.x[place], group.y[place], group.z[place]};
     const Real period = std::nearbyint(grains * period_ / radius_);
     candidates.origin = origin;
-    candidates.exact = true;
-    std::size_t count = 0, points = 0;
-    const auto pad = [&] {
-        const std::size_t padded = (count + octet_count - 1) / octet_count * octet_count;
-        candidates.reserve(padded);
-        for (; count < padded; ++count) {
-            candidates.point[count] = 0;
-            candidates.x[count] = nowhere;
-        }
-    };
-    candidates.inner = 0;
-    candidates.outer = 0;
+    candidates.inner = candidates.outer = candidates.count = 0;
+    std::size_t points = 0;
     for (const Sorted& other : group_) {
         points += other.x.size();
         other.grid.around(group.grid.cell(place), [&](Index first, Index last, int image) {
-            const Vec3 shifted{origin.x + image * period, origin.y, origin.z};
-            candidates.reserve(count + (last - first));
-            for (Index m = first; m < last; ++m, ++count) {
-                const Vec3 apart = Vec3{other.x[m], other.y[m], other.z[m]} - shifted;
-                candidates.point[count] = other.order[m];
-                candidates.x[count] = static_cast<float>(apart.x);
-                candidates.y[count] = static_cast<float>(apart.y);
-                candidates.z[count] = static_cast<float>(apart.z);
-                candidates.exact = candidates.exact && std::abs(apart.x) < exact_below &&
-                                   std::abs(apart.y) < exact_below &&
-                                   std::abs(apart.z) < exact_below;
-            }
+            const std::size_t count = last - first, at = candidates.count;
+            candidates.reserve(at + count);
+            const auto append = [&](const std::vector<Real>& from, Real zero,
+                                    std::vector<float>& to) {
+                const Real* const source = from.data() + first;
+                float* const target = to.data() + at;
+                for (std::size_t m = 0; m < count; ++m)
+                    target[m] = static_cast<float>(source[m] - zero);
+            };
+            append(other.x, origin.x + image * period, candidates.x);
+            append(other.y, origin.y, candidates.y);
+            append(other.z, origin.z, candidates.z);
+            std::copy_n(other.order.begin() + first, count,
+                        candidates.point.begin() + static_cast<std::ptrdiff_t>(at));
+            candidates.count += count;
         });
         if (points == rows()) {
-            candidates.sort(0, count);
-            candidates.inner = count;
-            pad();
-            candidates.outer = count;
+            candidates.sort(0, candidates.count);
+            candidates.inner = candidates.count;
+            candidates.pad();
+            candidates.outer = candidates.count;
         }
     }
-    candidates.sort(candidates.outer, count);
-    candidates.count = count;
-    pad();
+    candidates.sort(candidates.outer, candidates.count);
+    candidates.pad();
+}
+
+/// Fill the last register with points that are near to nothing.
+void NeighborList::Candidates::pad() {
+    reserve(count + octet_count);
+    for (; count % octet_count != 0; ++count) {
+        point[count] = 0;
+        x[count] = nowhere;
+    }
 }
 
 void NeighborList::Candidates::reserve(std::size_t size) {
@@ -229,31 +219,44 @@ void NeighborList::Candidates::sort(std::size_t first, std::size_t last) {
 /// Whole grains make the difference of two points the same float32 number but for its sign whatever
 /// they are counted from; pairs so near to the radius that rounding decides are looked at in
 /// double.
-bool NeighborList::keep_near(const Candidates& candidates, std::size_t first, std::size_t last,
-                             Index i, const Vec3& centre, Index end, Index& next) {
+bool NeighborList::keep_near(Candidates& candidates, std::size_t first, std::size_t last, Index i,
+                             const Vec3& centre, Index cell_begin, Index end, Index& next) {
     const Vec3 apart = centre - candidates.origin;
     const auto x = static_cast<float>(apart.x), y = static_cast<float>(apart.y),
                z = static_cast<float>(apart.z);
     const auto grain = static_cast<float>(radius_ / grains);
+    const auto half = static_cast<float>(period_ / 2) / grain;
+    const float *const xs = candidates.x.data(), *const ys = candidates.y.data(),
+                       *const zs = candidates.z.data();
+    const Index* const point = candidates.point.data();
+    const bool exact = exact_;
+    Index* const column = column_.get();
+    float* const squares = candidates.square.data();
+    Index at = next;
     for (std::size_t m = first; m < last; m += octet_count) {
-        if (next + octet_count > end) return false;
-        const FloatOctet dx = load_octet(&candidates.x[m]) - x;
-        const FloatOctet dy = load_octet(&candidates.y[m]) - y;
-        const FloatOctet dz = load_octet(&candidates.z[m]) - z;
+        if (at + octet_count > end) return false;
+        const FloatOctet dx = load_octet(xs + m) - x;
+        const FloatOctet dy = load_octet(ys + m) - y;
+        const FloatOctet dz = load_octet(zs + m) - z;
         const FloatOctet square = dx * dx + dy * dy + dz * dz;
-        const auto other = bits(load_indices(&candidates.point[m]) != i);
         unsigned near_ones = bits(square < square_of_radius - rounding);
-        unsigned doubtful = bits(square < square_of_radius + rounding) & ~near_ones;
-        if (!candidates.exact) doubtful = bits(square < nowhere), near_ones = 0;
-        for (; doubtful != 0; doubtful &= doubtful - 1) {
-            const auto k = static_cast<unsigned>(std::countr_zero(doubtful));
-            const bool image =
-                period_ == 0 || std::abs(dx[k]) * grain < static_cast<float>(period_) / 2;
-            if (image && near(i, candidates.point[m + k])) near_ones |= 1U << k;
+        unsigned doubtful = bits(square < square_of_radius + rounding);
+        if (!exact) {
+            doubtful = bits(square < nowhere);
+            near_ones = 0;
         }
-        next += static_cast<Index>(pack(&candidates.point[m], (grain * grain) * square,
-                                        near_ones & other, &column_[next], &square_[next]));
+        if (doubtful != near_ones) {
+            for (unsigned left = doubtful & ~near_ones; left != 0; left &= left - 1) {
+                const auto k = static_cast<unsigned>(std::countr_zero(left));
+                const bool image = period_ == 0 || std::abs(dx[k]) < half;
+                if (image && near(i, point[m + k])) near_ones |= 1U << k;
+            }
+        }
+        near_ones &= bits(load_indices(point + m) != i);
+        at += static_cast<Index>(pack(point + m, (grain * grain) * square, near_ones, column + at,
+                                      squares + (at - cell_begin)));
     }
+    next = at;
     return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/vec3.hpp"
+#include "core/lanes.hpp"
+#include "core/parallel.hpp"
 #include "neighbors/cell_grid.hpp"
 
 #include <memory>
@@ -35,8 +36,24 @@ public:
     /// neighbor in reach, the nearest.
     NeighborList(Real radius, Real period);
 
-    /// Make the list anew; memory is kept.
-    void find(std::span<const Vec3> position, const Groups& groups, int threads);
+    /// Make the list anew; memory is kept. What is wanted of the distances is kept by `store`,
+    /// while they are at hand: after store.reserve(entries()), store(k, squares) gives the squares
+    /// of the distances of the entries from k on [m2], good to a millionth of the radius and the
+    /// same in both rows of a pair.
+    template <class Store>
+    void find(std::span<const Vec3> position, const Groups& groups, int threads, Store&& store) {
+        prepare(position, groups, threads);
+        std::vector<char> fits(blocks_.size(), 0);
+        while (std::ranges::find(fits, 0) != fits.end()) {
+            const std::size_t room = make_room();
+            store.reserve(entries_);
+            parallel_for_blocks(blocks_.size(), threads, [&](std::size_t b) {
+                fits[b] = static_cast<char>(search(blocks_[b], candidates_[b],
+                                                   static_cast<Index>(b * room),
+                                                   static_cast<Index>((b + 1) * room), store));
+            });
+        }
+    }
     /// Of points of one group, all with rows.
     void find(std::span<const Vec3> position, int threads);
 
@@ -58,12 +75,6 @@ public:
     [[nodiscard]] std::span<const Index> column() const noexcept {
         return {column_.get(), entries_};
     }
-    /// Square of the distance of each neighbor [m2], good to a millionth of the radius and the same
-    /// in both rows of a pair.
-    [[nodiscard]] std::span<const float> square() const noexcept {
-        return {square_.get(), entries_};
-    }
-
     /// Call visit(j, r_ij, k) for the neighbors of i, entries k in [first(i), last(i)), r_ij =
     /// x_j - x_i to the nearest image [m]. r_ij and r_ji are opposite to the last bit.
     template <class Visit>
@@ -73,6 +84,19 @@ public:
             const Index j = column_[k];
             visit(j, nearest_image(position_[j] - x), k);
         }
+    }
+    /// x_j - x_i to the nearest image [m].
+    [[nodiscard]] Vec3 apart(std::size_t i, Index j) const noexcept {
+        return nearest_image(position_[j] - position_[i]);
+    }
+    /// The same for four j at once.
+    [[nodiscard]] [[gnu::always_inline]] Vector<Lanes>
+    apart_of_four(std::size_t i, const Index* j) const noexcept {
+        Vector<Lanes> apart = gather(position_.data(), j) - broadcast(position_[i]);
+        const Lanes half = Lanes{} + period_ / 2, none{};
+        apart.x -= select(apart.x > half, Lanes{} + period_, none);
+        apart.x += select(apart.x < -half, Lanes{} + period_, none);
+        return apart;
     }
 
 private:
@@ -86,44 +110,73 @@ private:
     struct Candidates {
         void reserve(std::size_t size);
         void sort(std::size_t first, std::size_t last);
+        void pad();
         Vec3 origin; // [grains]
         std::vector<Index> point;
         std::vector<float> x, y, z;                  // [grains] from the origin
         std::size_t inner = 0, outer = 0, count = 0; // [0, inner) have rows, [outer, count) none
-        bool exact = true;                           // float32 holds the coordinates exactly
+        std::vector<float> square; // [m2] of the neighbors found, in the rows of the cell
     };
 
-    [[nodiscard]] Vec3 nearest_image(Vec3 apart) const noexcept {
+    [[nodiscard]] Vec3 nearest_image(Vec3 difference) const noexcept {
         const Real half = period_ / 2;
-        if (apart.x > half)
-            apart.x -= period_;
-        else if (apart.x < -half)
-            apart.x += period_;
-        return apart;
+        if (difference.x > half)
+            difference.x -= period_;
+        else if (difference.x < -half)
+            difference.x += period_;
+        return difference;
     }
     [[nodiscard]] bool near(Index i, Index j) const noexcept {
-        const Vec3 apart = nearest_image(position_[j] - position_[i]);
-        return dot(apart, apart) < radius_ * radius_;
+        const Vec3 r = apart(i, j);
+        return dot(r, r) < radius_ * radius_;
     }
+    /// Some places of a group, searched by one thread in one go.
+    struct Block {
+        std::size_t group, first, last;
+    };
+
+    void prepare(std::span<const Vec3> position, const Groups& groups, int threads);
     void sort_group(Sorted& sorted, const Cells& cells, std::size_t first, std::size_t count,
                     int threads);
-    void reserve(std::size_t entries);
-    [[nodiscard]] bool search(const Sorted& group, std::size_t first, std::size_t last,
-                              Candidates& candidates, Index begin, Index end);
-    void gather(const Sorted& group, std::size_t place, Candidates& candidates);
-    [[nodiscard]] bool keep_near(const Candidates& candidates, std::size_t first, std::size_t last,
-                                 Index i, const Vec3& centre, Index end, Index& next);
+    /// More than at the last call; the entries for a block.
+    [[nodiscard]] std::size_t make_room();
+    void collect(const Sorted& group, std::size_t place, Candidates& candidates);
+    /// Find the row of the point in a place; false where it goes beyond the end.
+    [[nodiscard]] bool find_row(const Sorted& group, std::size_t place, Candidates& candidates,
+                                Index cell_begin, Index end, Index& next);
+    [[nodiscard]] bool keep_near(Candidates& candidates, std::size_t first, std::size_t last,
+                                 Index i, const Vec3& centre, Index cell_begin, Index end,
+                                 Index& next);
+
+    /// Find the rows of a block, to be written to [begin, end); false where they do not fit.
+    template <class Store>
+    [[nodiscard]] bool search(const Block& block, Candidates& candidates, Index begin, Index end,
+                              Store& store) {
+        const Sorted& group = group_[block.group];
+        Index next = begin;
+        for (std::size_t k = block.first; k < block.last;) {
+            collect(group, k, candidates);
+            const Index cell_begin = next;
+            const std::size_t cell = group.grid.cell(k);
+            for (; k < block.last && group.grid.cell(k) == cell; ++k)
+                if (!find_row(group, k, candidates, cell_begin, end, next)) return false;
+            store(cell_begin, std::span<const float>(candidates.square).first(next - cell_begin));
+        }
+        return true;
+    }
 
     Real radius_; // [m]
     Real period_; // [m] 0: none
     std::vector<Vec3> position_;
     std::vector<Sorted> group_;
+    std::vector<Block> blocks_;
     std::vector<Candidates> candidates_;      // of each block of rows
     std::vector<Index> first_, inner_, last_; // (rows,)
+    bool exact_ = true;                       // float32 holds differences of candidates exactly
     std::size_t row_room_ = 0;                // places set aside for a row, in the mean
+    bool tight_ = false;                      // the last ones were not enough
     std::size_t entries_ = 0, capacity_ = 0;
     std::unique_ptr<Index[]> column_; // (capacity_,)
-    std::unique_ptr<float[]> square_; // (capacity_,) [m2]
 };
 
 } // namespace mpsdem::neighbors

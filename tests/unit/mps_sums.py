@@ -79,7 +79,8 @@ def outward(s):
 def by_background_gradient(s, a):
     normal = -outward(s)[0]
     along = np.einsum("ijk,ik->ij", a.apart, normal)[..., None] * normal[:, None]
-    alike = (s.kind[None, :] == s.kind[:, None])[..., None]
+    liquid = s.kind == LIQUID
+    alike = (liquid[None, :] == liquid[:, None])[..., None]
     push = np.where(alike, a.apart, along)
     return by_difference_gradient(s, a) + 6 * BACKGROUND / a.number_density * np.einsum(
         "ij,ijk->ik", a.factor, push
@@ -97,7 +98,7 @@ def by_slip_divergence(s, a):
     for i, j in zip(*np.nonzero(a.weight), strict=True):
         du = s.velocity[j] - s.velocity[i]
         liquid = s.kind[[i, j]] == LIQUID
-        if not liquid.any() or s.kind[i] == GHOST:
+        if not liquid.any():
             continue
         if not liquid.all():
             inner, outer = (i, j) if liquid[0] else (j, i)
@@ -147,6 +148,10 @@ def by_shear_rate(s, a):
         strain = (gradient + gradient.T) / 2
         result[i] = np.sqrt(2 * np.sum(strain**2))
     return result
+
+
+def by_shifting(s, a):
+    return -3 * 0.1 * s.spacing**2 / a.number_density * np.einsum("ij,ijk->ik", a.factor, a.apart)
 
 
 SUMS = {

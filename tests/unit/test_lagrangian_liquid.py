@@ -36,7 +36,7 @@ def pipe(*, across, length, reynolds, velocity, swirl=0.0, **options):
             "density": DENSITY,
             "kinematic_viscosity": 2 * RADIUS / reynolds,
             "roughness": 0.0,
-            "turbulent": reynolds > 2300,
+            "turbulence": mps.MixingLength(pipe_radius=RADIUS) if reynolds > 2300 else None,
             "bulk_velocity": 1.0,
         }
         | options

@@ -73,6 +73,7 @@ def test_the_pipe_may_be_turned_about_its_axis_and_shifted_along_it(name):
 
 POWER_OF_LENGTH = {
     "number_density": 0,
+    "shifting": 1,
     "laplacian": -2,
     "least_squares_laplacian": -2,
     "viscous_acceleration": -2,
@@ -96,7 +97,10 @@ def test_the_result_scales_with_the_unit_of_length(name):
 
 
 @pytest.mark.parametrize(
-    "name", sorted(OPERATORS.keys() - {"number_density", "sum_gradient", "background_gradient"})
+    "name",
+    sorted(
+        OPERATORS.keys() - {"number_density", "sum_gradient", "background_gradient", "shifting"}
+    ),
 )
 def test_nothing_comes_of_a_field_that_is_the_same_everywhere(name):
     scene = pipe()
@@ -487,6 +491,30 @@ def test_without_a_background_the_difference_is_left():
         wall=scene.wall,
     )  # fmt: skip
     np.testing.assert_allclose(found, apply("difference_gradient", scene), rtol=1e-12)
+
+
+def test_weights_stored_in_float32_are_the_evaluated_ones_and_the_same_in_both_rows():
+    scene = pipe(cells=6)
+    neighbors = scene.neighbors
+    weight, over_square = mps.stored_weights(scene.position, scene.reference, period=scene.period)
+    rows = np.repeat(np.arange(len(scene.position)), np.diff(neighbors.row.astype(int)))
+    columns = neighbors.column.astype(int)
+    pairs = all_pairs(scene)
+    np.testing.assert_allclose(weight, pairs.weight[rows, columns], atol=2e-5)
+    np.testing.assert_allclose(
+        over_square, pairs.factor[rows, columns], rtol=2e-5, atol=1e-6 / scene.spacing**2
+    )
+    table = np.zeros_like(pairs.weight)
+    table[rows, columns] = weight
+    np.testing.assert_array_equal(table, table.T)
+
+
+def test_liquid_is_shifted_away_from_where_it_is_dense():
+    scene = beside_a_floor((0, 0, 5.0), (0.6, 0, 5.8), (9, 9, 5.0), kinds=[LIQUID] * 3)
+    shift = apply("shifting", scene)
+    assert shift[0] @ [0.6, 0, 0.8] < 0
+    np.testing.assert_array_equal(shift[0], -shift[1])
+    assert np.all(shift[2] == 0)
 
 
 # Too few neighbors.

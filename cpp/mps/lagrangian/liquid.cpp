@@ -50,11 +50,11 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     : wall_(wall), pipe_radius_(pipe_radius), pipe_length_(pipe_length), density_(density),
       viscosity_(kinematic_viscosity), flow_(flow), drive_(drive), numerics_(numerics),
       reference_(numerics.particle_spacing, reach * numerics.particle_spacing),
-      wall_function_(kinematic_viscosity, roughness),
-      neighbors_(reach * numerics.particle_spacing, pipe_length),
-      cells_(position, neighbors_.radius(), pipe_length), grid_(neighbors_.radius(), pipe_length),
-      pairs_(reference_.weight), pressure_equation_(numerics.solver, numerics.tolerance,
-                                                    numerics.particle_spacing, numerics.threads) {
+      wall_function_(kinematic_viscosity, roughness), pairs_(reference_.weight, pipe_length),
+      cells_(position, reference_.weight.effective_radius, pipe_length),
+      grid_(reference_.weight.effective_radius, pipe_length),
+      pressure_equation_(numerics.solver, numerics.tolerance, numerics.particle_spacing,
+                         numerics.threads) {
     require(position.size() == velocity.size() && position.size() == kind.size(),
             "Liquid: position, velocity and kind must have the same length");
     require(density > 0, "Liquid: density must be > 0 kg/m3");
@@ -82,11 +82,11 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     }
     pressure_.assign(size(), 0);
     find_pairs();
-    pressure_equation_.assemble(neighbors_, pairs_, {});
+    pressure_equation_.assemble(pairs_, {});
     pressure_equation_.prepare();
 
     // Ghosts lie still behind the wall, and so do their shares.
-    neighbors::NeighborList behind(neighbors_.radius(), pipe_length);
+    neighbors::NeighborList behind(reference_.weight.effective_radius, pipe_length);
     behind.find(std::span<const Vec3>(position_).subspan(liquid_count_), 1);
     behind_first_.push_back(0);
     for (std::size_t g = wall_count_; g < behind.rows(); ++g) {
@@ -170,24 +170,23 @@ void Liquid::sort() {
 
 void Liquid::find_pairs() {
     const std::size_t ghosts = size() - liquid_count_ - wall_count_;
-    neighbors_.find(position_, {{liquid_count_, wall_count_, ghosts}, liquid_count_ + wall_count_},
-                    numerics_.threads);
-    pairs_.store(neighbors_, numerics_.threads);
+    pairs_.find(position_, {{liquid_count_, wall_count_, ghosts}, liquid_count_ + wall_count_},
+                numerics_.threads);
 }
 
 /// Viscosity and wall shear, on the liquid.
 void Liquid::predict(Real dt, AdvanceReport& report) {
     const int threads = numerics_.threads;
-    acceleration_.resize(pairs_.rows());
+    acceleration_.resize(liquid_count_);
     if (turbulent()) {
         find_eddy_viscosity(dt, report);
-        viscous_acceleration(reference_, pairs_, kind_, eddy_viscosity_, velocity_, threads,
+        viscous_acceleration(reference_, pairs_, eddy_viscosity_, velocity_, threads,
                              acceleration_);
         add_wall_shear();
     } else {
-        deficient_.resize(pairs_.rows());
-        least_squares_laplacian<geometry::Cylinder, Vec3>(wall_, neighbors_, kind_, velocity_,
-                                                          threads, acceleration_, deficient_);
+        deficient_.resize(liquid_count_);
+        least_squares_laplacian<geometry::Cylinder, Vec3>(
+            wall_, pairs_.neighbors(), kind_, velocity_, threads, acceleration_, deficient_);
         report.deficient += static_cast<std::size_t>(std::ranges::count(deficient_, 1));
         for (Vec3& a : acceleration_) a = viscosity_ * a;
     }
@@ -199,18 +198,19 @@ void Liquid::find_eddy_viscosity(Real dt, AdvanceReport& report) {
     const int threads = numerics_.threads;
     const Real dx = numerics_.particle_spacing;
     const Real largest = viscous_limit * dx * dx / dt;
-    scalar_.resize(pairs_.rows());
-    eddy_viscosity_.resize(pairs_.rows());
-    shear_rate(pairs_, kind_, velocity_, threads, scalar_);
-    const auto liquid = std::span(eddy_viscosity_).first(liquid_count_);
+    scalar_.resize(liquid_count_);
+    eddy_viscosity_.resize(liquid_count_);
+    shear_rate(pairs_, velocity_, threads, scalar_);
     std::visit(
         [&]<class Model>(const Model& model) {
             if constexpr (LengthModel<Model>)
-                eddy_viscosity(model, liquid_position(), scalar_, largest, threads, liquid);
+                eddy_viscosity(model, liquid_position(), scalar_, largest, threads,
+                               eddy_viscosity_);
         },
         flow_);
-    report.viscosity_capped += static_cast<std::size_t>(std::ranges::count(liquid, largest));
-    parallel_for(liquid_count_, threads, [&](std::size_t i) { liquid[i] += viscosity_; });
+    report.viscosity_capped +=
+        static_cast<std::size_t>(std::ranges::count(eddy_viscosity_, largest));
+    parallel_for(liquid_count_, threads, [&](std::size_t i) { eddy_viscosity_[i] += viscosity_; });
 }
 
 /// Shear of the log law on the liquid nearer to the wall than a spacing. The layer's particles
@@ -250,7 +250,8 @@ bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     const int threads = numerics_.threads;
     const std::size_t unknowns = pairs_.rows();
     right_hand_side_.resize(unknowns);
-    slip_divergence(wall_, reference_, pairs_, kind_, velocity_, threads, right_hand_side_);
+    slip_divergence(wall_, reference_, pairs_, velocity_, threads,
+                    std::span(right_hand_side_).first(liquid_count_));
     const Real scale =
         -density_ / dt * reference_.number_density * reference_.lambda / (2 * dimensions);
     parallel_for(unknowns, threads, [&](std::size_t i) {
@@ -259,7 +260,7 @@ bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     remove_axial_bias();
     pressure_before_.assign(pressure_.begin(),
                             pressure_.begin() + static_cast<std::ptrdiff_t>(unknowns));
-    pressure_equation_.assemble(neighbors_, pairs_, {});
+    pressure_equation_.assemble(pairs_, {});
     if (!pressure_equation_.solve(right_hand_side_, std::span(pressure_).first(unknowns),
                                   report.solve)) {
         std::ranges::copy(pressure_before_, pressure_.begin());
@@ -279,14 +280,13 @@ void Liquid::remove_axial_bias() {
     const Real width = pipe_length_ / static_cast<Real>(bins);
     std::vector<Real> sum(bins), count(bins);
     for (std::size_t i = 0; i < liquid_count_; ++i) {
-        const auto b =
-            std::min(static_cast<std::size_t>(neighbors_.position(i).x / width), bins - 1);
+        const auto b = std::min(static_cast<std::size_t>(pairs_.position(i).x / width), bins - 1);
         sum[b] += right_hand_side_[i];
         count[b] += 1;
     }
     for (std::size_t b = 0; b < bins; ++b) sum[b] /= std::max(count[b], 1.);
     parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
-        const Real place = neighbors_.position(i).x / width - 0.5;
+        const Real place = pairs_.position(i).x / width - 0.5;
         const Real below = std::floor(place);
         const auto b = static_cast<std::size_t>(below + static_cast<Real>(bins)) % bins;
         const Real share = place - below;
@@ -332,7 +332,7 @@ void Liquid::extrapolate_pressure() {
 /// Gradient of p', then the mean axial gradient: given, or what holds the bulk velocity.
 void Liquid::correct(Real dt) {
     const int threads = numerics_.threads;
-    background_gradient(numerics_.background * dynamic_pressure(), wall_, reference_, pairs_, kind_,
+    background_gradient(numerics_.background * dynamic_pressure(), wall_, reference_, pairs_,
                         pressure_, threads, acceleration_);
     const Real before = bulk_velocity();
     parallel_for(liquid_count_, threads,
@@ -355,7 +355,7 @@ void Liquid::move(Real dt, AdvanceReport& report) {
         const Real length = norm(shift_[i]);
         if (length > longest) ++report.shifts_cut;
         const Vec3 shift = (length > longest ? longest / length : 1) * shift_[i];
-        Vec3 x = neighbors_.position(i) + dt * velocity_[i] + shift;
+        Vec3 x = pairs_.position(i) + dt * velocity_[i] + shift;
         const Real r2 = x.y * x.y + x.z * x.z;
         if (r2 > farthest * farthest) {
             const Real inwards = farthest / std::sqrt(r2);

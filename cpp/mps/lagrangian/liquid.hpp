@@ -146,10 +146,9 @@ private:
     Numerics numerics_;
     ReferenceDensity reference_;
     WallFunction wall_function_;
-    neighbors::NeighborList neighbors_;
+    StoredPairs pairs_;
     neighbors::Cells cells_; // over the walls and ghosts, which stay
     neighbors::CellGrid grid_;
-    StoredPairs pairs_;
     PressureEquation pressure_equation_;
 
     // Particles in the order liquid, wall, ghosts, each sorted by cells; walls and ghosts for good.

@@ -36,8 +36,7 @@ public:
           threads_(threads) {}
 
     /// Look at the matrix of these pairs; `known` (rows,) is d, or empty for none.
-    void assemble(const neighbors::NeighborList& neighbors, const StoredPairs& pairs,
-                  std::span<const Real> known);
+    void assemble(const StoredPairs& pairs, std::span<const Real> known);
 
     /// Make the coarse matrix from the matrix looked at.
     void prepare();

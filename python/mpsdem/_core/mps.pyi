@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'slip_divergence', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -650,6 +650,28 @@ def shear_rate(neighbors: mpsdem._core.neighbors.NeighborList, reference: Refere
     (n,) float64 ndarray
         [1/s]; 0 but for the liquid, and where its neighbors are too few.
     """
+def shifting(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, *, coefficient: typing.SupportsFloat | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Where particles should go for their neighborhoods to be even.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    coefficient : float
+        Of the spacing squared times the gradient of concentration [-]; 0.1 each step holds.
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [m]
+    
+    References
+    ----------
+    Xu, Stansby & Laurence (2009), doi:10.1016/j.jcp.2009.05.032.
+    """
 def slip_divergence(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
     """
     Divergence of the velocity beside a wall that lets the liquid slip.
@@ -671,7 +693,24 @@ def slip_divergence(neighbors: mpsdem._core.neighbors.NeighborList, reference: R
     Returns
     -------
     (n,) float64 ndarray
-        [1/s]; 0 at ghosts.
+        [1/s]
+    """
+def stored_weights(position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], reference: ReferenceDensity, *, period: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+    """
+    The weights as the particle liquid keeps them, rounded to float32.
+    
+    Parameters
+    ----------
+    position : (n, 3) float64 ndarray
+        [m]
+    reference : ReferenceDensity
+    period : float
+        Along x [m]; 0 for none.
+    
+    Returns
+    -------
+    (m,) float64 ndarray, (m,) float64 ndarray
+        W [-] and W / r^2 [1/m2] of the neighbors, in the order of a `NeighborList`.
     """
 def sum_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
     """
