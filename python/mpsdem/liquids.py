@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import mps
 from mpsdem.case import Case
-from mpsdem.geometry import Kind, Layout, ring_layout
-from mpsdem.plan import Plan, clear_gradient, pipe_profile
+from mpsdem.geometry import Kind, Layout, lattice_layout, ring_layout
+from mpsdem.plan import Plan, clear_gradient, pipe_profile, turbulence
 
 FloatArray = NDArray[np.float64]
 Stored = NDArray[Any] | int | float
@@ -23,6 +23,7 @@ CLIPS = ("clamped", "viscosity_capped", "shifts_cut", "deficient", "held_back")
 
 _PROFILE_POINTS = 101  # radii of the prescribed profile in the results
 _RINGS = 20  # radial bins of the measured profile
+_SMAGORINSKY = 0.1  # [-] C_s, that of shear flows
 _MOST_WRITTEN = 10_000  # particles of a frame, unless the case says otherwise
 
 
@@ -93,6 +94,8 @@ class Tally:
 
     time: float = 0.0  # [s]
     impulse: float = 0.0  # [Pa s/m] of the pressure gradient
+    friction: float = 0.0  # [Pa s/m] taken up by walls and viscosity
+    unexplained: float = 0.0  # [Pa s/m] what the solved pressure did along the pipe
     substeps: int = 0
     iterations: int = 0
     residual: float = 0.0
@@ -140,6 +143,8 @@ class ParticleLiquid:
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt
+        tally.friction += report.friction * dt
+        tally.unexplained += report.unexplained * dt
         tally.substeps += report.substeps
         tally.iterations += report.iterations
         tally.residual = max(tally.residual, report.residual)
@@ -197,10 +202,13 @@ class ParticleLiquid:
                 "velocity": velocity[self.written],
                 "pressure": pressure[self.written],
             }
+        time = tally.time or math.inf  # nothing has acted yet
         gradient = tally.impulse / tally.time if tally.time else particles.pressure_gradient
         diagnostics: dict[str, ArrayLike] = {
             "bulk_velocity": particles.bulk_velocity,
             "pressure_gradient": gradient,
+            "liquid_friction": tally.friction / time,
+            "liquid_unexplained": tally.unexplained / time,
             "pressure_iterations": tally.iterations / max(1, tally.substeps),
             "pressure_residual": tally.residual,
             "density_scatter": particles.density_scatter,
@@ -247,7 +255,15 @@ def _sample(count: int, stride: int | None) -> NDArray[np.intp]:
 def particle_layout(case: Case) -> Layout:
     """Where the particles of a case's liquid start."""
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
-    return ring_layout(radius=case.pipe.radius, length=case.pipe.length, spacing=spacing)
+    layout = lattice_layout if case.fidelity.layout == "lattice" else ring_layout
+    return layout(radius=case.pipe.radius, length=case.pipe.length, spacing=spacing)
+
+
+def _eddies(case: Case, spacing: float) -> mps.MixingLength | mps.Smagorinsky | None:
+    model = turbulence(case)
+    if model == "smagorinsky":
+        return mps.Smagorinsky(coefficient=_SMAGORINSKY, spacing=spacing)
+    return None if model is None else mps.MixingLength(pipe_radius=case.pipe.radius)
 
 
 def build_liquid(case: Case, plan: Plan) -> Liquid | None:
@@ -266,6 +282,8 @@ def build_liquid(case: Case, plan: Plan) -> Liquid | None:
     layout = particle_layout(case)
     moving = layout.kind == Kind.LIQUID
     velocity = np.where(moving[:, None], profile.velocity(layout.position), 0.0)
+    if (mean := velocity[moving, 0].mean()) != 0:
+        velocity *= liquid.bulk_velocity / mean  # the rings do not sample the profile evenly
     particles = mps.LagrangianLiquid(
         position=layout.position,
         velocity=velocity,
@@ -276,11 +294,12 @@ def build_liquid(case: Case, plan: Plan) -> Liquid | None:
         density=liquid.density,
         kinematic_viscosity=liquid.kinematic_viscosity,
         roughness=pipe.roughness,
-        turbulence=None if profile.laminar else mps.MixingLength(pipe_radius=pipe.radius),
+        turbulence=_eddies(case, layout.spacing),
         bulk_velocity=liquid.bulk_velocity,
         pressure_gradient=liquid.pressure_gradient,
         courant=case.fidelity.courant,
         tolerance=case.fidelity.pressure_tolerance,
+        solver=case.fidelity.pressure_solver,
         threads=plan.threads,
     )
     return ParticleLiquid(

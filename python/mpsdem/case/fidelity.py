@@ -36,6 +36,17 @@ class Fidelity(Part):
         Largest speed of a computed liquid times its step over the spacing [-].
     pressure_tolerance : float
         Residual at which the pressure equation is solved, relative [-].
+    pressure_solver : {"two_level", "jacobi", "cholmod"}
+        Of a particle liquid: conjugate gradients whose iterations do not grow with the pipe's
+        length; the same without a coarse space, for comparison; or a sparse factor each step, the
+        reference, where the build has found CHOLMOD.
+    layout : {"rings", "lattice"}
+        How the particles of a liquid start: on rings that follow the wall, or on a cubic lattice
+        that the wall cuts in stairs (ten times the error in laminar flow).
+    turbulence : {"auto", "mixing_length", "smagorinsky"}
+        Eddy viscosity of a particle liquid. ``"auto"``: none below a Reynolds number of 2300, else
+        the mixing length of pipe flow. Smagorinsky's is a model of what large eddies leave over;
+        the particles carry hardly any, and its friction comes out too low.
     threads : int
         Threads of the kernels; 0 leaves the choice to the program. Results do not depend on it.
     """
@@ -49,6 +60,9 @@ class Fidelity(Part):
     particle_spacing: Annotated[float, Quantity("m", above=0.0)] | None = None
     courant: Annotated[float, Quantity(above=0.0, at_most=2.0)] = 0.8
     pressure_tolerance: Annotated[float, Quantity(above=0.0, below=1.0)] = 1e-3
+    pressure_solver: Literal["two_level", "jacobi", "cholmod"] = "two_level"
+    layout: Literal["rings", "lattice"] = "rings"
+    turbulence: Literal["auto", "mixing_length", "smagorinsky"] = "auto"
     threads: Annotated[int, Whole(at_least=0)] = 0
 
     @property

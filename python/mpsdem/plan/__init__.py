@@ -15,6 +15,7 @@ from mpsdem.plan.scales import (
     pipe_profile,
     spring_stiffness,
     terminal_velocity,
+    turbulence,
 )
 
 __all__ = [
@@ -38,4 +39,5 @@ __all__ = [
     "pipe_profile",
     "spring_stiffness",
     "terminal_velocity",
+    "turbulence",
 ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mpsdem import _core
 from mpsdem.case import Case, CaseError, Problem
 from mpsdem.contacts import rayleigh_time
 from mpsdem.plan.scales import (
@@ -143,10 +144,16 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
     """Limits of the step of a particle liquid at its expected speed; none for other liquids.
 
     Where it is faster than expected, it parts a step itself.
+
+    Raises
+    ------
+    CaseError
+        If its solver was not built.
     """
     if case.liquid is None or liquid_model(case) != "lagrangian":
         return
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+    _require_solver(case)
     profile = pipe_profile(case)
     on_axis = abs(float(profile.velocity(np.zeros((1, 3)))[0, 0]))
     courant = case.fidelity.courant
@@ -155,6 +162,17 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
         yield Limit(name=name, value=courant * spacing / on_axis)
     viscous = _VISCOUS_SHARE * spacing**2 / case.liquid.kinematic_viscosity
     yield Limit(name=f"{_VISCOUS_SHARE:g} of the viscous time of a spacing", value=viscous)
+
+
+def _require_solver(case: Case) -> None:
+    if case.fidelity.pressure_solver == "cholmod" and not _core.cholmod:
+        problem = Problem(
+            field="fidelity.pressure_solver",
+            value="cholmod",
+            rule="needs CHOLMOD, which this build has not found",
+            remedy="use 'two_level', or install SuiteSparse and build again",
+        )
+        raise CaseError([problem])
 
 
 def _limits(

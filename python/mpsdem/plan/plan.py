@@ -30,6 +30,7 @@ from mpsdem.plan.scales import (
     solids_of,
     spring_stiffness,
     terminal_velocity,
+    turbulence,
 )
 
 _DILUTE = 1e-3  # [-] solid fraction above which the liquid notices the solids
@@ -242,16 +243,21 @@ def _needs_void_fraction(case: Case) -> bool:
     return case.solids_count > 1 and solids_of(case).drag != "schiller_naumann"
 
 
+def _flow(case: Case) -> str:
+    model = turbulence(case)
+    if model is None:
+        return "laminar, no-slip walls"
+    chosen = (
+        "as the flow is turbulent" if case.fidelity.turbulence == "auto" else "as was asked for"
+    )
+    return f"{model.replace('_', ' ')} and log-law wall function, {chosen}"
+
+
 def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
     solids, liquid = case.solids, case.liquid
     moving = liquid_model(case) == "lagrangian"
     if moving:
-        flow = (
-            "laminar, no-slip walls"
-            if pipe_profile(case).laminar
-            else "mixing length and log-law wall function, as the flow is turbulent"
-        )
-        reason = f"about {particle_count(case)} particles were asked for; {flow}"
+        reason = f"about {particle_count(case)} particles were asked for; {_flow(case)}"
         yield Planned(name="AdvanceLiquid", reason=reason)
     if solids is not None:
         if liquid is not None:
@@ -306,6 +312,11 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
 
 def _warnings(case: Case, speed: float) -> Iterator[str]:
     solids, liquid = case.solids, case.liquid
+    if liquid_model(case) == "lagrangian" and turbulence(case) == "smagorinsky":
+        yield (
+            "fidelity.turbulence = smagorinsky leaves the mean flow to eddies that the particles "
+            "do not carry: friction comes out too low, 8 % at 16 spacings across the bore"
+        )
     if liquid is not None:
         reynolds = abs(liquid.bulk_velocity) * 2 * case.pipe.radius / liquid.kinematic_viscosity
         if 2300 <= reynolds <= 4000:

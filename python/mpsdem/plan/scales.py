@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,6 +157,28 @@ def liquid_model(case: Case) -> str | None:
     if case.liquid is None:
         return None
     return "profile" if case.liquid.model == "auto" else case.liquid.model
+
+
+def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
+    """Model of the eddy viscosity of a particle liquid; None where the flow is laminar.
+
+    Raises
+    ------
+    CaseError
+        If one is asked for in laminar flow, which has no eddies.
+    """
+    asked = case.fidelity.turbulence
+    if not pipe_profile(case).laminar:
+        return "mixing_length" if asked == "auto" else asked
+    if asked != "auto":
+        problem = Problem(
+            field="fidelity.turbulence",
+            value=asked,
+            rule="needs turbulent flow; the Reynolds number of this pipe is below 2300",
+            remedy="leave it out",
+        )
+        raise CaseError([problem])
+    return None
 
 
 def particle_count(case: Case) -> int:

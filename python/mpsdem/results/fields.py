@@ -69,6 +69,8 @@ DIAGNOSTICS = _table(
     ("pressure_noise", "Pa", "Scatter of the liquid's pressure, mean gradient and head apart"),
     ("liquid_kinetic_energy", "J/kg", "Kinetic energy of the liquid over its mass"),
     ("clamped", "1", "Pressures cut to their bounds since the last frame", "int64"),
+    ("liquid_friction", "Pa/m", "What walls and viscosity took from the liquid's axial momentum"),
+    ("liquid_unexplained", "Pa/m", "What the solved pressure did to it, and should not"),
     ("viscosity_capped", "1", "Eddy viscosities cut to what the step can bear", "int64"),
     ("shifts_cut", "1", "Shifts of particles cut to their longest since the last frame", "int64"),
     ("deficient", "1", "Particles without a viscous term since the last frame", "int64"),

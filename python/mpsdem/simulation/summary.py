@@ -44,7 +44,10 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
         "liquid_model": plan.liquid_model,
         "solids_count": plan.case.solids_count,
     }
-    values |= _of_liquid(plan, state, results) | _of_solids(plan, state, results)
+    parts = (_of_liquid(plan, state, results), _of_solids(plan, state, results))
+    values |= parts[0] | parts[1]
+    errors = [part["momentum_error"] for part in parts if part.get("momentum_error") is not None]
+    values["momentum_error"] = max(errors, default=None)
     values["warnings"] = [*plan.warnings, *_warnings(values)]
     reasons = {"exchange_error": "the liquid takes no impulse from the solids"}
     if plan.liquid_model != "lagrangian":
@@ -57,8 +60,8 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
         reasons |= dict.fromkeys(_SOLIDS_KEYS, "no solids")
     elif plan.case.gravity == 0:
         reasons |= {"bed_height": "no gravity"}
-    if values.get("momentum_error", 0.0) is None:
-        reasons |= {"momentum_error": "no wall took an impulse"}
+    if not errors:
+        reasons |= {"momentum_error": "nothing took an impulse at the wall"}
     return values, reasons
 
 
@@ -76,7 +79,6 @@ _SOLIDS_KEYS = (
     "delivered_concentration",
     "bed_height",
     "largest_overlap",
-    "momentum_error",
     "exchange_error",
 )
 
@@ -119,6 +121,7 @@ def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
         # particles carry the mass, as long as they are in the bore
         "mass_error": 1 - liquid.count_in_bore / count,
         "pressure_iterations": _mean(results, "pressure_iterations"),
+        "momentum_error": _liquid_momentum_error(results),
         "liquid_clips": {name: int(results.diagnostics[name].sum()) for name in CLIPS},
     }
 
@@ -139,7 +142,7 @@ def _of_solids(plan: Plan, state: State, results: Results) -> dict[str, Any]:
         "insitu_concentration": concentration,
         "bed_height": float(np.quantile(z + radius, _BED_SHARE) + case.pipe.radius),
         "largest_overlap": float(results.diagnostics["largest_overlap"].max()),
-        "momentum_error": _momentum_error(plan, state, results),
+        "momentum_error": _solids_momentum_error(plan, state, results),
         "void_fraction_clipped": state.clipped,
     }
     if liquid is not None and liquid.bulk_velocity != 0:
@@ -148,7 +151,14 @@ def _of_solids(plan: Plan, state: State, results: Results) -> dict[str, Any]:
     return values
 
 
-def _momentum_error(plan: Plan, state: State, results: Results) -> float | None:
+def _liquid_momentum_error(results: Results) -> float | None:
+    """Axial impulse on the liquid that nothing explains, over that of friction, if any."""
+    unexplained = results.diagnostics["liquid_unexplained"].sum()
+    friction = results.diagnostics["liquid_friction"].sum()
+    return float(abs(unexplained / friction)) if friction != 0 else None
+
+
+def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float | None:
     """Impulse on the solids that nothing explains, over that of wall friction; None without any."""
     case, liquid, solids = plan.case, plan.case.liquid, state.solids
     assert case.solids is not None
