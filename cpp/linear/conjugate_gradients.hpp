@@ -17,6 +17,10 @@ concept Preconditioner = requires(P& m, const P& constant, const LaplacianMatrix
     { m.apply(r, z, threads) } noexcept -> std::same_as<Real>;
 };
 
+[[nodiscard]] inline Real dot(std::span<const Real> a, std::span<const Real> b, int threads) {
+    return ordered_sum(a.size(), threads, [&](std::size_t i) { return a[i] * b[i]; });
+}
+
 enum class Outcome {
     converged,
     exhausted, // out of iterations

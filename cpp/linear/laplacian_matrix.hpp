@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/check.hpp"
+#include "core/ordered_sum.hpp"
 #include "linear/float_rows.hpp"
-#include "linear/ordered_sum.hpp"
 
 #include <span>
 #include <vector>

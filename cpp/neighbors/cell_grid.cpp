@@ -6,23 +6,32 @@
 
 namespace mpsdem::neighbors {
 
-Cells::Cells(std::span<const Vec3> position, Real cell_size, Real period) {
+Cells::Cells(std::span<const Vec3> position, Real cell_size, Real period, int threads) {
     const std::size_t points = position.size();
     if (points == 0) return;
-    const auto component = [&](std::size_t i, std::size_t d) {
-        const Vec3 r = position[i];
-        return d == 0 ? r.x : d == 1 ? r.y : r.z;
-    };
-    std::array<Real, 3> width{};
-    for (std::size_t d = 0; d < 3; ++d) {
-        Real least = component(0, d), most = least;
-        for (std::size_t i = 1; i < points; ++i) {
-            least = std::min(least, component(i, d));
-            most = std::max(most, component(i, d));
+    constexpr std::size_t blocks = 64;
+    std::array<Vec3, blocks> least, most;
+    parallel_for(blocks, threads, [&](std::size_t b) {
+        Vec3 low_end = position[0], high_end = low_end;
+        for (std::size_t i = points * b / blocks; i < points * (b + 1) / blocks; ++i) {
+            const Vec3& x = position[i];
+            low_end = {std::min(low_end.x, x.x), std::min(low_end.y, x.y),
+                       std::min(low_end.z, x.z)};
+            high_end = {std::max(high_end.x, x.x), std::max(high_end.y, x.y),
+                        std::max(high_end.z, x.z)};
         }
-        low[d] = least;
-        width[d] = most - least;
+        least[b] = low_end;
+        most[b] = high_end;
+    });
+    std::array<Real, 3> high{most[0].x, most[0].y, most[0].z}, width{};
+    low = {least[0].x, least[0].y, least[0].z};
+    for (std::size_t b = 1; b < blocks; ++b) {
+        low = {std::min(low[0], least[b].x), std::min(low[1], least[b].y),
+               std::min(low[2], least[b].z)};
+        high = {std::max(high[0], most[b].x), std::max(high[1], most[b].y),
+                std::max(high[2], most[b].z)};
     }
+    for (std::size_t d = 0; d < 3; ++d) width[d] = high[d] - low[d];
     if (period > 0) {
         low[0] = 0;
         width[0] = period;

@@ -15,7 +15,7 @@ namespace mpsdem::neighbors {
 struct Cells {
     /// `period` [m] along x, 0 for none; positions must be finite and in [0, period). Cells are at
     /// least `cell_size` wide.
-    Cells(std::span<const Vec3> position, Real cell_size, Real period);
+    Cells(std::span<const Vec3> position, Real cell_size, Real period, int threads);
 
     [[nodiscard]] std::size_t count() const noexcept {
         return static_cast<std::size_t>(n[0] * n[1] * n[2]);
@@ -41,7 +41,7 @@ public:
 
     /// Order of the points by cell: the k-th sorted point is position[order[k]].
     void sort(std::span<const Vec3> position, std::vector<Index>& order) {
-        sort(position, Cells(position, cell_size_, period_), order, 1);
+        sort(position, Cells(position, cell_size_, period_, 1), order, 1);
     }
     /// The same by given cells, which other points may share.
     void sort(std::span<const Vec3> position, const Cells& cells, std::vector<Index>& order,

@@ -1,6 +1,7 @@
 #include "neighbors/neighbor_list.hpp"
 
 #include "core/check.hpp"
+#include "core/ordered_sum.hpp"
 #include "core/pack.hpp"
 #include "core/parallel.hpp"
 
@@ -22,13 +23,12 @@ constexpr float rounding = 5e-6F * square_of_radius; // [grains2] of a square ne
 constexpr Real widest_exact_cell = 3; // [-] radii: differences below 2^23 grains are exact
 constexpr float nowhere = 1e30F;      // [grains]
 
-void require_finite(std::span<const Vec3> position) {
-    require(std::ranges::all_of(position,
-                                [](Vec3 x) {
-                                    return std::isfinite(x.x) && std::isfinite(x.y) &&
-                                           std::isfinite(x.z);
-                                }),
-            "position must be finite");
+void require_finite(std::span<const Vec3> position, int threads) {
+    const Real lost = ordered_sum(position.size(), threads, [&](std::size_t i) {
+        const Vec3& x = position[i];
+        return std::isfinite(x.x + x.y + x.z) ? 0. : 1.;
+    });
+    require(lost == 0, "position must be finite");
 }
 
 void wrap(std::span<const Vec3> position, Real period, int threads, std::vector<Vec3>& inside) {
@@ -48,7 +48,7 @@ void wrap(std::span<const Vec3> position, Real period, int threads, std::vector<
 std::vector<Index> cell_order(std::span<const Vec3> position, Real cell_size, Real period) {
     require(cell_size > 0, "cell_size must be > 0 m");
     require(period >= 0, "period must be >= 0 m");
-    require_finite(position);
+    require_finite(position, 1);
     std::vector<Index> order;
     std::vector<Vec3> inside;
     wrap(position, period, 1, inside);
@@ -74,9 +74,9 @@ void NeighborList::find(std::span<const Vec3> position, int threads) {
 void NeighborList::prepare(std::span<const Vec3> position, const Groups& groups, int threads) {
     require(position.size() < std::numeric_limits<Index>::max(),
             "NeighborList: position must have fewer than 2^32 rows");
-    require_finite(position);
+    require_finite(position, threads);
     wrap(position, period_, threads, position_);
-    const Cells cells(position_, radius_, period_);
+    const Cells cells(position_, radius_, period_, threads);
     exact_ = std::ranges::all_of(
         cells.inverse, [&](Real inverse) { return inverse * radius_ * widest_exact_cell >= 1; });
     group_.resize(groups.group.size(), {CellGrid(radius_, period_), {}, {}, {}, {}});

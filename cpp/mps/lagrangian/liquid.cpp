@@ -1,7 +1,7 @@
 #include "mps/lagrangian/liquid.hpp"
 
 #include "core/check.hpp"
-#include "linear/ordered_sum.hpp"
+#include "core/ordered_sum.hpp"
 #include "mps/divergence.hpp"
 #include "mps/gradient.hpp"
 #include "mps/least_squares_laplacian.hpp"
@@ -43,6 +43,13 @@ std::vector<T> in_given_order(std::span<const T> values, std::span<const Index> 
 
 } // namespace
 
+/// Number of liquid particles for which something holds; what decides may also change them.
+template <class Holds>
+std::size_t Liquid::count_liquid(const Holds& holds) const {
+    return static_cast<std::size_t>(ordered_sum(liquid_count_, numerics_.threads,
+                                                [&](std::size_t i) { return holds(i) ? 1. : 0.; }));
+}
+
 Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
                std::span<const Kind> kind, const geometry::Cylinder& wall, Real pipe_radius,
                Real pipe_length, Real density, Real kinematic_viscosity, Real roughness, Flow flow,
@@ -51,7 +58,7 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
       viscosity_(kinematic_viscosity), flow_(flow), drive_(drive), numerics_(numerics),
       reference_(numerics.particle_spacing, reach * numerics.particle_spacing),
       wall_function_(kinematic_viscosity, roughness), pairs_(reference_.weight, pipe_length),
-      cells_(position, reference_.weight.effective_radius, pipe_length),
+      cells_(position, reference_.weight.effective_radius, pipe_length, numerics.threads),
       grid_(reference_.weight.effective_radius, pipe_length),
       pressure_equation_(numerics.solver, numerics.tolerance, numerics.particle_spacing,
                          numerics.threads) {
@@ -209,7 +216,7 @@ void Liquid::find_eddy_viscosity(Real dt, AdvanceReport& report) {
         },
         flow_);
     report.viscosity_capped +=
-        static_cast<std::size_t>(std::ranges::count(eddy_viscosity_, largest));
+        count_liquid([&](std::size_t i) { return eddy_viscosity_[i] == largest; });
     parallel_for(liquid_count_, threads, [&](std::size_t i) { eddy_viscosity_[i] += viscosity_; });
 }
 
@@ -299,22 +306,21 @@ void Liquid::cut_pressure(AdvanceReport& report) {
     const int threads = numerics_.threads;
     const auto count = static_cast<Real>(liquid_count_);
     const Real mean =
-        linear::ordered_sum(liquid_count_, threads, [&](std::size_t i) { return pressure_[i]; }) /
-        count;
+        ordered_sum(liquid_count_, threads, [&](std::size_t i) { return pressure_[i]; }) / count;
     const Real limit = turbulent() && dynamic_pressure() > 0
                            ? numerics_.pressure_limit * dynamic_pressure()
                            : std::numeric_limits<Real>::infinity();
-    for (std::size_t i = 0; i < liquid_count_; ++i)
-        report.clamped += std::abs(pressure_[i] - mean) > limit;
+    report.clamped +=
+        count_liquid([&](std::size_t i) { return std::abs(pressure_[i] - mean) > limit; });
     parallel_for(pairs_.rows(), threads, [&](std::size_t i) {
         pressure_[i] = std::clamp(pressure_[i] - mean, -limit, limit);
     });
-    pressure_noise_ = std::sqrt(linear::ordered_sum(liquid_count_, threads,
-                                                    [&](std::size_t i) {
-                                                        const Real change =
-                                                            pressure_[i] - pressure_before_[i];
-                                                        return change * change;
-                                                    }) /
+    pressure_noise_ = std::sqrt(ordered_sum(liquid_count_, threads,
+                                            [&](std::size_t i) {
+                                                const Real change =
+                                                    pressure_[i] - pressure_before_[i];
+                                                return change * change;
+                                            }) /
                                 count);
 }
 
@@ -350,24 +356,29 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     const Real longest = longest_shift * dx;
     shift_.resize(liquid_count_);
     shifting(numerics_.shift, reference_, pairs_, numerics_.threads, shift_);
-    const Real farthest = pipe_radius_ - nearest_liquid * dx;
-    for (std::size_t i = 0; i < liquid_count_; ++i) {
+    report.shifts_cut += count_liquid([&](std::size_t i) {
         const Real length = norm(shift_[i]);
-        if (length > longest) ++report.shifts_cut;
-        const Vec3 shift = (length > longest ? longest / length : 1) * shift_[i];
-        Vec3 x = pairs_.position(i) + dt * velocity_[i] + shift;
+        if (length > longest) shift_[i] = (longest / length) * shift_[i];
+        return length > longest;
+    });
+    const Real farthest = pipe_radius_ - nearest_liquid * dx;
+    report.held_back += count_liquid([&](std::size_t i) {
+        Vec3 x = pairs_.position(i) + dt * velocity_[i] + shift_[i];
         const Real r2 = x.y * x.y + x.z * x.z;
-        if (r2 > farthest * farthest) {
+        const bool beyond = r2 > farthest * farthest;
+        if (beyond) {
             const Real inwards = farthest / std::sqrt(r2);
             x.y *= inwards;
             x.z *= inwards;
-            ++report.held_back;
         }
         x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
         position_[i] = x.x < pipe_length_ ? x : Vec3{0, x.y, x.z};
-        report.sound = report.sound && std::isfinite(dot(velocity_[i], velocity_[i])) &&
-                       std::isfinite(dot(x, x));
-    }
+        return beyond;
+    });
+    const std::size_t lost = count_liquid([&](std::size_t i) {
+        return !std::isfinite(dot(velocity_[i], velocity_[i]) + dot(position_[i], position_[i]));
+    });
+    report.sound = report.sound && lost == 0;
 }
 
 std::vector<Vec3> Liquid::position() const {
@@ -384,14 +395,14 @@ std::vector<Real> Liquid::pressure() const {
 }
 
 Real Liquid::bulk_velocity() const {
-    return linear::ordered_sum(liquid_count_, numerics_.threads,
-                               [&](std::size_t i) { return velocity_[i].x; }) /
+    return ordered_sum(liquid_count_, numerics_.threads,
+                       [&](std::size_t i) { return velocity_[i].x; }) /
            static_cast<Real>(liquid_count_);
 }
 
 Real Liquid::kinetic_energy() const {
-    return linear::ordered_sum(liquid_count_, numerics_.threads,
-                               [&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; }) /
+    return ordered_sum(liquid_count_, numerics_.threads,
+                       [&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; }) /
            static_cast<Real>(liquid_count_);
 }
 

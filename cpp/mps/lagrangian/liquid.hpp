@@ -123,6 +123,8 @@ private:
         return !std::holds_alternative<Laminar>(flow_);
     }
     [[nodiscard]] Real dynamic_pressure() const noexcept; // [Pa] rho U^2
+    template <class Holds>
+    [[nodiscard]] std::size_t count_liquid(const Holds& holds) const;
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report);
     void sort();

@@ -7,7 +7,7 @@
 #include <array>
 #include <numeric>
 
-namespace mpsdem::linear {
+namespace mpsdem {
 
 /// Sum of term(i) for i in [0, n), in an order that depends on n alone: blocks, each of a few
 /// independent chains. `term` may also write what belongs to index i.
@@ -29,8 +29,4 @@ template <class Term>
     return std::accumulate(partial.begin(), partial.begin() + blocks, Real{0});
 }
 
-[[nodiscard]] inline Real dot(std::span<const Real> a, std::span<const Real> b, int threads) {
-    return ordered_sum(a.size(), threads, [&](std::size_t i) { return a[i] * b[i]; });
-}
-
-} // namespace mpsdem::linear
+} // namespace mpsdem
