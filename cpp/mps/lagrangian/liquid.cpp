@@ -139,12 +139,16 @@ Real Liquid::dynamic_pressure() const noexcept {
     return density_ * drive_.bulk_velocity * drive_.bulk_velocity;
 }
 
+Real Liquid::fastest() const {
+    Real square = 0;
+    for (const Vec3& u : liquid_velocity()) square = std::max(square, dot(u, u));
+    return std::sqrt(square);
+}
+
 /// Largest step for the speeds and the molecular viscosity [s]; the eddy viscosity is cut to fit.
 Real Liquid::stable_step() const {
-    Real fastest2 = 0;
-    for (const Vec3& u : liquid_velocity()) fastest2 = std::max(fastest2, dot(u, u));
     const Real dx = numerics_.particle_spacing;
-    const Real speed = std::max(std::sqrt(fastest2), std::numeric_limits<Real>::min());
+    const Real speed = std::max(fastest(), std::numeric_limits<Real>::min());
     return std::min(numerics_.courant * dx / speed, viscous_limit * dx * dx / viscosity_);
 }
 
@@ -257,8 +261,11 @@ bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     const int threads = numerics_.threads;
     const std::size_t unknowns = pairs_.rows();
     right_hand_side_.resize(unknowns);
-    slip_divergence(wall_, reference_, pairs_, velocity_, threads,
-                    std::span(right_hand_side_).first(liquid_count_));
+    const auto source = std::span(right_hand_side_).first(liquid_count_);
+    if (turbulent())
+        slip_divergence(wall_, reference_, pairs_, velocity_, threads, source);
+    else
+        corrected_divergence(wall_, reference_, pairs_, velocity_, threads, source);
     const Real scale =
         -density_ / dt * reference_.number_density * reference_.lambda / (2 * dimensions);
     parallel_for(unknowns, threads, [&](std::size_t i) {
@@ -351,11 +358,15 @@ void Liquid::correct(Real dt) {
     parallel_for(liquid_count_, threads, [&](std::size_t i) { velocity_[i].x += kick; });
 }
 
+/// Move with the velocity, and shift towards where particles are few. The shift goes with the way
+/// that the liquid makes: disorder comes from it, and a shift of every step, however short, would
+/// mix the momentum of a flow whose steps viscosity limits.
 void Liquid::move(Real dt, AdvanceReport& report) {
     const Real dx = numerics_.particle_spacing;
     const Real longest = longest_shift * dx;
+    const Real way = fastest() * dt / dx;
     shift_.resize(liquid_count_);
-    shifting(numerics_.shift, reference_, pairs_, numerics_.threads, shift_);
+    shifting(numerics_.shift * way, reference_, pairs_, numerics_.threads, shift_);
     report.shifts_cut += count_liquid([&](std::size_t i) {
         const Real length = norm(shift_[i]);
         if (length > longest) shift_[i] = (longest / length) * shift_[i];
