@@ -40,6 +40,12 @@ mps::lagrangian::Solver solver_of(const std::string& name) {
     return Solver::cholmod;
 }
 
+mps::Pairing pairing_of(const std::string& name) {
+    if (name == "conserving") return mps::Pairing::conserving;
+    require(name == "difference", "pairing must be conserving or difference, not " + name);
+    return mps::Pairing::difference;
+}
+
 } // namespace
 
 void bind_lagrangian(py::module_ m) {
@@ -107,6 +113,9 @@ courant, tolerance, background, shift, pressure_limit : float
     Numbers of the method [-].
 solver : {"two_level", "jacobi", "cholmod"}
     Of the pressure equation: conjugate gradients, or a factor each step where the build has it.
+pairing : {"conserving", "difference"}
+    What the gradient takes of a pair: the sum of its pressures, equal and opposite; or their
+    difference, blind to a constant.
 threads : int
     The results do not depend on it.
 
@@ -119,21 +128,22 @@ Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
                          Real pipe_length, Real density, Real kinematic_viscosity, Real roughness,
                          const Turbulence& turbulence, Real bulk_velocity,
                          std::optional<Real> pressure_gradient, Real courant, Real tolerance,
-                         const std::string& solver, Real background, Real shift,
-                         Real pressure_limit, int threads) {
+                         const std::string& solver, const std::string& pairing, Real background,
+                         Real shift, Real pressure_limit, int threads) {
                  using namespace mps::lagrangian;
                  return Liquid(vectors(position, "position"), vectors(velocity, "velocity"),
                                kinds(kind), geometry::Cylinder(pipe_radius, {}), pipe_radius,
                                pipe_length, density, kinematic_viscosity, roughness,
                                flow(turbulence), {bulk_velocity, pressure_gradient},
                                {particle_spacing, courant, tolerance, background, shift,
-                                pressure_limit, solver_of(solver), threads});
+                                pairing_of(pairing), pressure_limit, solver_of(solver), threads});
              }),
              py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
              "pipe_radius"_a, "pipe_length"_a, "density"_a, "kinematic_viscosity"_a, "roughness"_a,
              "turbulence"_a, "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
              "courant"_a = 0.8, "tolerance"_a = 1e-3, "solver"_a = "two_level",
-             "background"_a = 0.02, "shift"_a = 0.25, "pressure_limit"_a = 0.25, "threads"_a = 1)
+             "pairing"_a = "conserving", "background"_a = 0.02, "shift"_a = 0.25,
+             "pressure_limit"_a = 0.25, "threads"_a = 1)
         .def("__len__", &Liquid::size)
         .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
              "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")

@@ -106,6 +106,7 @@ Array<Real> corrected_gradient(const NeighborList& neighbors, const ReferenceDen
     });
 }
 
+template <mps::Pairing pairing>
 Array<Real> background_gradient(const NeighborList& neighbors, const ReferenceDensity& reference,
                                 const Array<Real>& pressure, Real background,
                                 const Array<std::int8_t>& kind, const AnyWall& any, int threads) {
@@ -115,7 +116,7 @@ Array<Real> background_gradient(const NeighborList& neighbors, const ReferenceDe
     return filled<Vec3>(p.size(), [&](auto result) {
         std::visit(
             [&](const auto* wall) {
-                mps::background_gradient(background, *wall, reference,
+                mps::background_gradient(pairing, background, *wall, reference,
                                          EvaluatedPairs(neighbors, reference.weight, kinds), p,
                                          threads, result);
             },
@@ -429,11 +430,40 @@ References
 ----------
 Khayyer & Gotoh (2011), doi:10.1016/j.jcp.2011.01.009.
 )");
-    m.def("background_gradient", &background_gradient, "neighbors"_a, "reference"_a, "pressure"_a,
-          py::kw_only(), "background"_a, "kind"_a, "wall"_a.none(false), "threads"_a = 1,
+    m.def("background_gradient", &background_gradient<mps::Pairing::difference>, "neighbors"_a,
+          "reference"_a, "pressure"_a, py::kw_only(), "background"_a, "kind"_a,
+          "wall"_a.none(false), "threads"_a = 1,
           R"(Pressure gradient from p_j - p_i, and 2 p_b that spreads the particles evenly.
 
 Between liquid and wall the background pushes along the wall's normal alone.
+
+Parameters
+----------
+neighbors : NeighborList
+reference : ReferenceDensity
+pressure : (n,) float64 ndarray
+    [Pa]
+background : float
+    p_b [Pa]; 0.02 of density x bulk velocity^2 is a good choice.
+kind : (n,) int8 ndarray
+    2 liquid, -2 wall, -1 ghost.
+wall : Plane or Cylinder
+threads : int
+    The result does not depend on it.
+
+Returns
+-------
+(n, 3) float64 ndarray
+    [Pa/m]
+)");
+    m.def(
+        "conserving_gradient", &background_gradient<mps::Pairing::conserving>, "neighbors"_a,
+        "reference"_a, "pressure"_a, py::kw_only(), "background"_a, "kind"_a, "wall"_a.none(false),
+        "threads"_a = 1,
+        R"(Pressure gradient from p_j + p_i among liquid, and 2 p_b that spreads the particles evenly.
+
+Momentum among liquid is kept to round-off. Between liquid and wall the difference counts along the
+wall, the sum along its normal.
 
 Parameters
 ----------

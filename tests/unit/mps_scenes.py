@@ -49,6 +49,9 @@ OPERATORS = {
     "background_gradient": lambda n, s, **k: mps.background_gradient(
         n, s.reference, s.pressure, background=BACKGROUND, kind=s.kind, wall=s.wall, **k
     ),
+    "conserving_gradient": lambda n, s, **k: mps.conserving_gradient(
+        n, s.reference, s.pressure, background=BACKGROUND, kind=s.kind, wall=s.wall, **k
+    ),
     "divergence": lambda n, s, **k: mps.divergence(n, s.reference, s.velocity, **k),
     "slip_divergence": lambda n, s, **k: mps.slip_divergence(
         n, s.reference, s.velocity, kind=s.kind, wall=s.wall, **k

@@ -87,6 +87,19 @@ def by_background_gradient(s, a):
     )
 
 
+def by_conserving_gradient(s, a):
+    normal = -outward(s)[0]
+    liquid = s.kind == LIQUID
+    mixed = liquid[None, :] != liquid[:, None]
+    sums = s.pressure[None, :] + s.pressure[:, None]
+    differences = s.pressure[None, :] - s.pressure[:, None]
+    along_normal = np.einsum("ijk,ik->ij", a.apart, normal)[..., None] * normal[:, None]
+    whole = (sums + 2 * BACKGROUND)[..., None]
+    beside_wall = whole * along_normal + differences[..., None] * (a.apart - along_normal)
+    pairs = np.where(mixed[..., None], beside_wall, whole * a.apart)
+    return 3 / a.number_density * np.einsum("ij,ijk->ik", a.factor, pairs)
+
+
 def by_divergence(s, a):
     du = s.velocity[None, :] - s.velocity[:, None]
     return 3 / a.number_density * np.einsum("ij,ijk,ijk->i", a.factor, du, a.apart)

@@ -99,7 +99,14 @@ def test_the_result_scales_with_the_unit_of_length(name):
 @pytest.mark.parametrize(
     "name",
     sorted(
-        OPERATORS.keys() - {"number_density", "sum_gradient", "background_gradient", "shifting"}
+        OPERATORS.keys()
+        - {
+            "number_density",
+            "sum_gradient",
+            "background_gradient",
+            "conserving_gradient",
+            "shifting",
+        }
     ),
 )
 def test_nothing_comes_of_a_field_that_is_the_same_everywhere(name):
@@ -316,6 +323,7 @@ ORDER = {  # on a lattice, among scattered particles
     "sum_gradient": (2, -1),
     "difference_gradient": (2, 0),
     "background_gradient": (2, -1),
+    "conserving_gradient": (2, -1),
     "corrected_gradient": (2, 1),
     "divergence": (2, 0),
     "slip_divergence": (2, 0),
@@ -387,7 +395,7 @@ def test_forms_that_pair_equal_and_opposite_keep_momentum_to_round_off():
         velocity=rng.uniform(-1, 1, (count, 3)),
         viscosity=rng.uniform(0.1, 1, count),
     )
-    for name in ("sum_gradient", "laplacian", "viscous_acceleration"):
+    for name in ("sum_gradient", "conserving_gradient", "laplacian", "viscous_acceleration"):
         assert net(apply(name, scene)) < 1e-12
     for name in ("difference_gradient", "corrected_gradient"):
         assert net(apply(name, scene)) > 1e-3

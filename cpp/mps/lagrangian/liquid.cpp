@@ -345,8 +345,8 @@ void Liquid::extrapolate_pressure() {
 /// Gradient of p', then the mean axial gradient: given, or what holds the bulk velocity.
 void Liquid::correct(Real dt) {
     const int threads = numerics_.threads;
-    background_gradient(numerics_.background * dynamic_pressure(), wall_, reference_, pairs_,
-                        pressure_, threads, acceleration_);
+    background_gradient(numerics_.pairing, numerics_.background * dynamic_pressure(), wall_,
+                        reference_, pairs_, pressure_, threads, acceleration_);
     const Real before = bulk_velocity();
     parallel_for(liquid_count_, threads,
                  [&](std::size_t i) { velocity_[i] -= (dt / density_) * acceleration_[i]; });

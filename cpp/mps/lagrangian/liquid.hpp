@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/cylinder.hpp"
+#include "mps/gradient.hpp"
 #include "mps/kind.hpp"
 #include "mps/lagrangian/pressure_equation.hpp"
 #include "mps/reference_density.hpp"
@@ -28,12 +29,13 @@ struct Drive {
 
 /// Numbers of the method, with the values that held in long pipes.
 struct Numerics {
-    Real particle_spacing;      // [m]
-    Real courant = 0.8;         // [-] largest speed * step / spacing
-    Real tolerance = 1e-3;      // [-] of the pressure equation's residual
-    Real background = 0.02;     // [-] p_b over rho U^2
-    Real shift = 0.25;          // [-] of the spacing squared, times the gradient of concentration,
-                                //     for each spacing that the fastest liquid goes
+    Real particle_spacing;  // [m]
+    Real courant = 0.8;     // [-] largest speed * step / spacing
+    Real tolerance = 1e-3;  // [-] of the pressure equation's residual
+    Real background = 0.02; // [-] p_b over rho U^2
+    Real shift = 0.25;      // [-] of the spacing squared, times the gradient of concentration,
+                            //     for each spacing that the fastest liquid goes
+    Pairing pairing = Pairing::conserving;
     Real pressure_limit = 0.25; // [-] largest |p'| over rho U^2; beyond it, clamped and counted
     Solver solver = Solver::two_level;
     int threads = 1;

@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -312,6 +312,9 @@ class LagrangianLiquid:
         Numbers of the method [-].
     solver : {"two_level", "jacobi", "cholmod"}
         Of the pressure equation: conjugate gradients, or a factor each step where the build has it.
+    pairing : {"conserving", "difference"}
+        What the gradient takes of a pair: the sum of its pressures, equal and opposite; or their
+        difference, blind to a constant.
     threads : int
         The results do not depend on it.
     
@@ -319,7 +322,7 @@ class LagrangianLiquid:
     ----------
     Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
     """
-    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.25, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', pairing: str = 'conserving', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.25, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         ...
     def __len__(self) -> int:
         ...
@@ -420,6 +423,32 @@ def background_gradient(neighbors: mpsdem._core.neighbors.NeighborList, referenc
     Pressure gradient from p_j - p_i, and 2 p_b that spreads the particles evenly.
     
     Between liquid and wall the background pushes along the wall's normal alone.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    pressure : (n,) float64 ndarray
+        [Pa]
+    background : float
+        p_b [Pa]; 0.02 of density x bulk velocity^2 is a good choice.
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    wall : Plane or Cylinder
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        [Pa/m]
+    """
+def conserving_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, background: typing.SupportsFloat | typing.SupportsIndex, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Pressure gradient from p_j + p_i among liquid, and 2 p_b that spreads the particles evenly.
+    
+    Momentum among liquid is kept to round-off. Between liquid and wall the difference counts along the
+    wall, the sum along its normal.
     
     Parameters
     ----------
