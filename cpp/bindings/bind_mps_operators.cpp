@@ -142,6 +142,22 @@ Array<Real> slip_divergence(const NeighborList& neighbors, const ReferenceDensit
     });
 }
 
+Array<Real> corrected_divergence(const NeighborList& neighbors, const ReferenceDensity& reference,
+                                 const Array<Real>& velocity, const Array<std::int8_t>& kind,
+                                 const AnyWall& any, int threads) {
+    require_reach(neighbors, reference.weight);
+    const auto u = vectors_of(neighbors, velocity, "velocity");
+    const auto kinds = kinds_of(neighbors, kind);
+    return filled<Real>(u.size(), [&](auto result) {
+        std::visit(
+            [&](const auto* wall) {
+                mps::corrected_divergence(*wall, reference, neighbors, std::span<const Kind>(kinds),
+                                          u, threads, result);
+            },
+            any);
+    });
+}
+
 Array<Real> laplacian(const NeighborList& neighbors, const ReferenceDensity& reference,
                       const Array<Real>& field, int threads) {
     require_reach(neighbors, reference.weight);
@@ -409,6 +425,29 @@ Returns
 -------
 (n,) float64 ndarray
     [1/s]; 0 at ghosts.
+)");
+    m.def("corrected_divergence", &corrected_divergence, "neighbors"_a, "reference"_a, "velocity"_a,
+          py::kw_only(), "kind"_a, "wall"_a.none(false), "threads"_a = 1,
+          R"(Divergence of the velocity beside a no-slip wall, exact for linear velocities.
+
+The whole velocity is mirrored in the wall.
+
+Parameters
+----------
+neighbors : NeighborList
+reference : ReferenceDensity
+velocity : (n, 3) float64 ndarray
+    Of liquid, wall and ghosts [m/s].
+kind : (n,) int8 ndarray
+    2 liquid, -2 wall, -1 ghost.
+wall : Plane or Cylinder
+threads : int
+    The result does not depend on it.
+
+Returns
+-------
+(n,) float64 ndarray
+    [1/s]; 0 at walls and ghosts.
 )");
 }
 

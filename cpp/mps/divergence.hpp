@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
 #include "mps/kind.hpp"
+#include "mps/moment.hpp"
 #include "mps/reference_density.hpp"
 #include "neighbors/neighbor_list.hpp"
 
@@ -64,6 +65,43 @@ void slip_divergence(const Wall& wall, const ReferenceDensity& reference,
             });
         }
         result[i] = scale * sum;
+    });
+}
+
+/// div u_i = sum_j (u_j - u_i) . M_i^-1 r_ij W / r^2 at a no-slip wall, M_i the neighborhood's
+/// moment: exact for linear velocities anywhere. Between liquid a and wall or ghost b the
+/// difference u_b - u_a is mirrored whole,
+///
+///   -k (u_a - u_b)     k = min(1 + d_b / max(d_a, 0.3 dx), 3)
+///
+/// In a shear flow the plain sum is a source of false divergence where particles lie unevenly: a
+/// cross-flow of 0.2 % of a parabola, at any spacing. 0 for walls and ghosts. Where M_i has no
+/// inverse, the sum with that of the undisturbed lattice.
+template <geometry::Surface Wall>
+void corrected_divergence(const Wall& wall, const ReferenceDensity& reference,
+                          const neighbors::NeighborList& neighbors, std::span<const Kind> kind,
+                          std::span<const Vec3> velocity, int threads, std::span<Real> result) {
+    const Real least = nearest_liquid * reference.spacing;
+    parallel_for(neighbors.size(), threads, [&](std::size_t i) {
+        result[i] = 0;
+        if (kind[i] != Kind::liquid) return;
+        const Real own = std::max(wall.at(neighbors.position(i)).distance, least);
+        Moment moment;
+        Vec3 x, y, z; // sums of each component of the velocity
+        neighbors.each(i, [&](Index j, const Vec3& r) {
+            const Real factor = reference.weight.over_square(dot(r, r));
+            Vec3 du = velocity[j] - velocity[i];
+            if (kind[j] != Kind::liquid) {
+                const Real depth = -wall.at(neighbors.position(j)).distance;
+                du = std::min(1 + depth / own, Real{3}) * du;
+            }
+            moment.add(factor, r);
+            x += (factor * du.x) * r;
+            y += (factor * du.y) * r;
+            z += (factor * du.z) * r;
+        });
+        result[i] = moment.flat() ? dimensions / reference.number_density * (x.x + y.y + z.z)
+                                  : moment.solve(x).x + moment.solve(y).y + moment.solve(z).z;
     });
 }
 

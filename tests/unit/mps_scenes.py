@@ -53,6 +53,9 @@ OPERATORS = {
     "slip_divergence": lambda n, s, **k: mps.slip_divergence(
         n, s.reference, s.velocity, kind=s.kind, wall=s.wall, **k
     ),
+    "corrected_divergence": lambda n, s, **k: mps.corrected_divergence(
+        n, s.reference, s.velocity, kind=s.kind, wall=s.wall, **k
+    ),
     "laplacian": lambda n, s, **k: mps.laplacian(n, s.reference, s.velocity, **k),
     "least_squares_laplacian": lambda n, s, **k: mps.least_squares_laplacian(
         n, s.velocity, kind=s.kind, wall=s.wall, **k

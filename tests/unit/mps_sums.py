@@ -107,6 +107,18 @@ def by_slip_divergence(s, a):
     return 3 / a.number_density * total
 
 
+def by_corrected_divergence(s, a):
+    """As the trace of the gradient fitted to the neighbors, those of the wall mirrored."""
+    distance = outward(s)[1]
+    result = np.zeros(len(s.position))
+    for i in np.flatnonzero(s.kind == LIQUID):
+        du = s.velocity - s.velocity[i]
+        times = 1 - distance / max(distance[i], 0.3 * s.spacing)
+        du[s.kind != LIQUID] *= np.minimum(times, 3)[s.kind != LIQUID, None]
+        result[i] = np.trace(weighted_fit(a.apart[i], a.factor[i], du))
+    return result
+
+
 def by_laplacian(s, a):
     du = s.velocity[None, :] - s.velocity[:, None]
     return 6 / (a.number_density * a.lambda_) * np.einsum("ij,ijk->ik", a.weight, du)

@@ -298,6 +298,7 @@ def error(name, cells, jitter):
     exact = {
         "divergence": gradient @ [1, 0.5, -1],
         "slip_divergence": gradient @ [1, 0.5, -1],
+        "corrected_divergence": gradient @ [1, 0.5, -1],
         "shear_rate": np.sqrt(2 * np.sum(strain**2, axis=(1, 2))),
         "laplacian": laplacian[:, None] * [1, 0.5, -1],
         "least_squares_laplacian": laplacian[:, None] * [1, 0.5, -1],
@@ -314,6 +315,7 @@ ORDER = {  # on a lattice, among scattered particles
     "corrected_gradient": (2, 1),
     "divergence": (2, 0),
     "slip_divergence": (2, 0),
+    "corrected_divergence": (2, 1),
     "laplacian": (2, -1),
     "viscous_acceleration": (2, -1),
     "least_squares_laplacian": (2, 1),
@@ -455,6 +457,30 @@ def test_a_velocity_that_grows_from_the_wall_has_its_divergence_up_to_the_wall()
     low = liquid & (depth < 0.3) & (np.abs(scene.position[:, 1]) < 0.25)
     assert depth[low].min() == pytest.approx(0.5 * scene.spacing)
     np.testing.assert_allclose(apply("slip_divergence", scene)[low], 1, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("direction", "expected"), [((0, 0, 1), 1), ((1, -2, 0), 0)])
+def test_a_corrected_divergence_knows_a_linear_velocity_among_scattered_particles(
+    direction, expected
+):
+    """u = z over a floor that it sticks to, the reach so short that no mirror factor is cut."""
+    scene = block(12, reach=1.5, jitter=0.1)
+    depth = scene.position[:, 2] - scene.position[:, 2].min() - 0.5 * scene.spacing
+    floor = geometry.Plane(
+        point=(0, 0, scene.position[:, 2].min() + 0.5 * scene.spacing),
+        normal=(0, 0, 1),
+        velocity=AT_REST,
+    )
+    liquid = depth > 0
+    velocity = np.outer(np.where(liquid, depth, 0), direction)
+    kind = np.where(liquid, LIQUID, WALL).astype(np.int8)
+    scene = replace(scene, kind=kind, wall=floor, velocity=velocity)
+    among = liquid & (np.abs(scene.position[:, :2]) < 0.25).all(axis=1) & (depth < 0.5)
+    assert depth[among].min() < scene.spacing
+    got = apply("corrected_divergence", scene)
+    np.testing.assert_allclose(got[among], expected, atol=1e-10)
+    assert np.all(got[~liquid] == 0)
+    assert np.abs(apply("divergence", scene)[among] - expected).max() > 0.01
 
 
 def test_walls_and_ghosts_among_themselves_have_no_divergence():

@@ -270,7 +270,10 @@ void Liquid::assemble(Real dt) {
     column_.resize(row_.back());
     weight_.resize(row_.back());
     scalar_.resize(n);
-    slip_divergence(wall_, reference_, neighbors_, kind_, velocity_, threads, scalar_);
+    if (flow_ == Flow::laminar)
+        corrected_divergence(wall_, reference_, neighbors_, kind_, velocity_, threads, scalar_);
+    else
+        slip_divergence(wall_, reference_, neighbors_, kind_, velocity_, threads, scalar_);
     const Real scale =
         -density_ / dt * reference_.number_density * reference_.lambda / (2 * dimensions);
     right_hand_side_.resize(unknowns);

@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'slip_divergence', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'slip_divergence', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -436,6 +436,29 @@ def background_gradient(neighbors: mpsdem._core.neighbors.NeighborList, referenc
     -------
     (n, 3) float64 ndarray
         [Pa/m]
+    """
+def corrected_divergence(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Divergence of the velocity beside a no-slip wall, exact for linear velocities.
+    
+    The whole velocity is mirrored in the wall.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    velocity : (n, 3) float64 ndarray
+        Of liquid, wall and ghosts [m/s].
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    wall : Plane or Cylinder
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n,) float64 ndarray
+        [1/s]; 0 at walls and ghosts.
     """
 def corrected_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
     """
