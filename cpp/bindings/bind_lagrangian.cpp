@@ -107,7 +107,7 @@ Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
              py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
              "pipe_radius"_a, "pipe_length"_a, "density"_a, "kinematic_viscosity"_a, "roughness"_a,
              "turbulent"_a, "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
-             "courant"_a = 0.8, "tolerance"_a = 1e-3, "background"_a = 0.02, "shift"_a = 0.1,
+             "courant"_a = 0.8, "tolerance"_a = 1e-3, "background"_a = 0.02, "shift"_a = 0.25,
              "pressure_limit"_a = 0.25, "threads"_a = 1)
         .def("__len__", &Liquid::size)
         .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),

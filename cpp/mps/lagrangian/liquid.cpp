@@ -87,12 +87,16 @@ AdvanceReport Liquid::advance(Real dt) {
     return report;
 }
 
+Real Liquid::fastest() const {
+    Real square = 0;
+    for (const Vec3& u : velocity_) square = std::max(square, dot(u, u));
+    return std::sqrt(square);
+}
+
 /// Largest step for the speeds and the molecular viscosity [s]; the eddy viscosity is cut to fit.
 Real Liquid::stable_step() const {
-    Real fastest2 = 0;
-    for (const Vec3& u : velocity_) fastest2 = std::max(fastest2, dot(u, u));
     const Real dx = numerics_.particle_spacing;
-    const Real speed = std::max(std::sqrt(fastest2), std::numeric_limits<Real>::min());
+    const Real speed = std::max(fastest(), std::numeric_limits<Real>::min());
     return std::min(numerics_.courant * dx / speed, viscous_limit * dx * dx / viscosity_);
 }
 
@@ -336,9 +340,13 @@ void Liquid::correct(Real dt) {
         if (kind_[i] == Kind::liquid) velocity_[i].x += kick;
 }
 
+/// Move with the velocity, and shift towards where particles are few. The shift goes with the way
+/// that the liquid makes: disorder comes from it, and a shift of every step, however short, would
+/// mix the momentum of a flow whose steps viscosity limits.
 void Liquid::move(Real dt, AdvanceReport& report) {
     const Real dx = numerics_.particle_spacing;
-    const Real scale = -numerics_.shift * dx * dx * dimensions / reference_.number_density;
+    const Real way = fastest() * dt / dx;
+    const Real scale = -numerics_.shift * way * dx * dx * dimensions / reference_.number_density;
     const Real longest = longest_shift * dx;
     shift_.resize(size());
     density_number_.resize(size());

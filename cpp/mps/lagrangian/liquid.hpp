@@ -30,7 +30,8 @@ struct Numerics {
     Real courant = 0.8;         // [-] largest speed * step / spacing
     Real tolerance = 1e-3;      // [-] of the pressure equation's residual
     Real background = 0.02;     // [-] p_b over rho U^2
-    Real shift = 0.1;           // [-] of the spacing squared, times the gradient of concentration
+    Real shift = 0.25;          // [-] of the spacing squared, times the gradient of concentration,
+                                //     for each spacing that the fastest liquid goes
     Real pressure_limit = 0.25; // [-] largest |p'| over rho U^2; beyond it, clamped and counted
     int threads = 1;
 };
@@ -116,6 +117,7 @@ public:
     void restore(const Snapshot& snapshot);
 
 private:
+    [[nodiscard]] Real fastest() const; // [m/s]
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report);
     void sort();
