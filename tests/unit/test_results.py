@@ -128,6 +128,20 @@ def test_a_liquid_of_particles_is_read_as_it_was_written(tmp_path):
         liquid.profile_velocity  # noqa: B018
 
 
+def test_the_full_pressure_adds_the_weight_above_and_the_loss_along_the_pipe(tmp_path):
+    steep = CLEAR.with_(pipe={"inclination": "30 deg"}, gravity=10.0)
+    results = Results(write_run(tmp_path, steep, [0.0, 0.5], "particles"))
+    liquid, x = results.liquid, results.liquid.position[1]
+    height = x[:, 0] * 0.5 + x[:, 2] * np.sqrt(0.75)
+    added = -1000.0 * 10.0 * height - results.pressure_gradient[1] * x[:, 0]
+    np.testing.assert_allclose(liquid.full_pressure(1), liquid.pressure[1] + added, rtol=1e-12)
+    along = liquid.section_position
+    added = -(1000.0 * 10.0 * 0.5 + results.pressure_gradient[-1]) * along
+    np.testing.assert_allclose(
+        liquid.full_section_pressure(-1), liquid.section_pressure[-1] + added, rtol=1e-12
+    )
+
+
 def test_a_liquid_may_leave_its_particles_unrecorded(tmp_path):
     liquid = Results(write_run(tmp_path, CLEAR, [0.0], "unrecorded")).liquid
     assert not liquid.has_particles

@@ -150,6 +150,12 @@ class Case(Part):
         ]
 
     @property
+    def gravity_vector(self) -> tuple[float, float, float]:
+        """Gravity in the axes of the pipe [m/s2]."""
+        rise = self.pipe.inclination
+        return -self.gravity * math.sin(rise), 0.0, -self.gravity * math.cos(rise)
+
+    @property
     def solids_count(self) -> int:
         """Number of solids."""
         if self.solids is None:

@@ -202,8 +202,7 @@ def pipe_profile(case: Case) -> mps.PipeProfile:
 
 def gravity(case: Case) -> FloatArray:
     """Gravity in the axes of the pipe, (3,) [m/s2]."""
-    rise = case.pipe.inclination
-    return case.gravity * np.array([-math.sin(rise), 0.0, -math.cos(rise)])
+    return np.array(case.gravity_vector)
 
 
 def clear_gradient(case: Case) -> float:

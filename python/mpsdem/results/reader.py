@@ -225,9 +225,15 @@ class LiquidResults:
     -----
     A prescribed liquid is its profile. One of particles has a profile per frame, the pressure along
     the axis, and those particles that the run recorded, which may be none.
+
+    Their pressure p' leaves out what is known without computing: the mean gradient and the static
+    part. In a full rigid pipe a uniform acceleration such as gravity moves no liquid, whatever its
+    size; left in, it would ask the solver for a pressure many times that of the flow, and its error
+    would stir the liquid. `full_pressure` adds both again.
     """
 
     def __init__(self, results: Results) -> None:
+        self._results = results
         self._run = results._run
 
     def __contains__(self, name: str) -> bool:
@@ -287,6 +293,49 @@ class LiquidResults:
     def pressure(self) -> Field:
         """Pressures of the recorded particles, (frames, m) [Pa]; mean gradient and head apart."""
         return Field(self._run, "liquid/pressure")
+
+    def full_pressure(self, frame: int) -> FloatArray:
+        """Pressure of the recorded particles with mean gradient and static part.
+
+        Parameters
+        ----------
+        frame : int
+            Which; -1 is the last.
+
+        Returns
+        -------
+        (m,) float64 ndarray
+            p' + rho g.x - G x [Pa], G the mean loss since the frame before. Zero is the mean of p'
+            on the axis at the inlet. It is not periodic: from the outlet to the inlet it jumps by
+            what a pump gives.
+        """
+        pressure: FloatArray = self.pressure[frame]
+        return pressure + self._split_off(frame, self.position[frame])
+
+    def full_section_pressure(self, frame: int) -> FloatArray:
+        """Pressure in the bins along the pipe, on its axis, with mean gradient and static part.
+
+        Parameters
+        ----------
+        frame : int
+            Which; -1 is the last.
+
+        Returns
+        -------
+        (s,) float64 ndarray
+            [Pa], as `full_pressure`.
+        """
+        pressure: FloatArray = self.section_pressure[frame]
+        return pressure + self._split_off(frame, np.outer(self.section_position, [1.0, 0.0, 0.0]))
+
+    def _split_off(self, frame: int, position: FloatArray) -> FloatArray:
+        """What the pressure at some positions, (n, 3) [m], was stored without [Pa]."""
+        case = self._results.case
+        assert case.liquid is not None
+        per_metre = case.liquid.density * np.array(case.gravity_vector)
+        per_metre[0] -= self._results.pressure_gradient[frame]
+        split_off: FloatArray = position @ per_metre
+        return split_off
 
 
 class Diagnostics(Mapping[str, FloatArray]):

@@ -11,13 +11,19 @@ from collections.abc import Iterable
 
 from rich.console import Console
 
-from mpsdem.validation import drag, impacts, pipe, rolling
+from mpsdem.validation import drag, impacts, particle_liquid, pipe, rolling
 from mpsdem.validation.registry import Check, Outcome, Source, collect, select
 from mpsdem.validation.report import report
 
 __all__ = ["CHECKS", "Check", "Outcome", "Source", "run"]
 
-CHECKS = collect(impacts.checks(), rolling.checks(), drag.checks(), pipe.checks())
+CHECKS = collect(
+    impacts.checks(),
+    rolling.checks(),
+    drag.checks(),
+    pipe.checks(),
+    particle_liquid.checks(),
+)
 """All checks by their ids."""
 
 

@@ -48,6 +48,9 @@ class Check:
     differs : str
         Not empty where the program is known to miss the number: the reason. Such a check is
         reported, never counted as passed.
+    slow : bool
+        Whether its run takes longer than a quick look at the tests should: those leave it to
+        ``pytest -m slow``. `mpsdem validate` runs it.
     """
 
     id: str
@@ -59,6 +62,7 @@ class Check:
     unit: str = "-"
     source: Source = ANALYTIC
     differs: str = ""
+    slow: bool = False
 
     def __post_init__(self) -> None:
         if (self.relative > 0) == (self.absolute > 0):
