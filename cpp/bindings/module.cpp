@@ -13,6 +13,7 @@ void bind_dem(pybind11::module_ m);
 void bind_mps(pybind11::module_ m);
 void bind_mps_operators(pybind11::module_ m);
 void bind_lagrangian(pybind11::module_ m);
+void bind_eulerian(pybind11::module_ m);
 void bind_coupling(pybind11::module_ m);
 
 namespace {
@@ -62,5 +63,6 @@ PYBIND11_MODULE(_core, m) {
     b::bind_mps(mps);
     b::bind_mps_operators(mps);
     b::bind_lagrangian(mps);
+    b::bind_eulerian(mps);
     b::bind_coupling(m.def_submodule("coupling"));
 }

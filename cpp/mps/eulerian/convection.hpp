@@ -1,0 +1,133 @@
+#pragma once
+
+#include "mps/eulerian/axial.hpp"
+#include "mps/eulerian/section.hpp"
+#include "mps/eulerian/stencil.hpp"
+#include "mps/eulerian/strain.hpp"
+
+/// What the liquid carries with it, -(u . grad) u, at the inner nodes of one chunk of stations; and
+/// on the way |S|, as the gradients are there.
+namespace mpsdem::mps::eulerian {
+
+/// Where a sweep writes: the acceleration [m/s2] and |S|^2 [1/s2].
+struct Carried {
+    VectorField& acceleration;
+    Field& strain;
+};
+
+/// Along the pipe: fourth-order differences, damped by |u| dx^3 / 12 d^4/dx^4 as third-order upwind
+/// differences are.
+[[nodiscard]] [[gnu::always_inline]] inline Lanes
+carried_along(const Axial& axial, Lanes speed, const Real* f, Lanes& slope) noexcept {
+    slope = axial.first(f);
+    return speed * slope + abs(speed) * axial.damping(f);
+}
+
+/// Least-squares upwind: across the pipe u . C f + |u_y| E_y f + |u_z| E_z f with the weights of
+/// `upwind_stencil`. Third order in the damping, second in the rest.
+inline void carry_upwind(const Section& section, const Stencil<4>& stencil, const Axial& axial,
+                         const VectorField& u, std::size_t begin, std::size_t end, Carried out) {
+    for (std::size_t i = 0; i < section.interior_count(); ++i) {
+        const auto entries = stencil.of(i);
+        by_registers(begin, end, [&](std::size_t k, auto registers) {
+            constexpr std::size_t n = decltype(registers)::value;
+            Vector<Lanes> gradient[3][n];
+            const Field* const component[3] = {&u.x, &u.y, &u.z};
+            Field* const result[3] = {&out.acceleration.x, &out.acceleration.y,
+                                     &out.acceleration.z};
+            for (std::size_t a = 0; a < 3; ++a) {
+                const Field& f = *component[a];
+                const auto sums = apply<n, 4>(entries, f, k);
+                for (std::size_t v = 0; v < n; ++v) {
+                    const std::size_t at = k + v * lane_count;
+                    const Lanes uy = load(u.y[i] + at), uz = load(u.z[i] + at);
+                    Lanes slope;
+                    const Lanes along =
+                        carried_along(axial, load(u.x[i] + at), f[i] + at, slope);
+                    const Lanes across = uy * sums.of[0][v] + uz * sums.of[1][v] +
+                                         abs(uy) * sums.of[2][v] + abs(uz) * sums.of[3][v];
+                    store((*result[a])[i] + at, -(along + across));
+                    gradient[a][v] = {slope, sums.of[0][v], sums.of[1][v]};
+                }
+            }
+            for (std::size_t v = 0; v < n; ++v) {
+                store(out.strain[i] + k + v * lane_count,
+                      squared_strain(gradient[0][v], gradient[1][v], gradient[2][v]));
+            }
+        });
+    }
+}
+
+/// Gradient across the pipe of a field at every node, wall included: y and z parts [1/m of f].
+inline void gradient_across(const Stencil<2>& stencil, const Field& f, std::size_t begin,
+                            std::size_t end, Field& y, Field& z) {
+    for (std::size_t i = 0; i < stencil.rows(); ++i) {
+        const auto entries = stencil.of(i);
+        by_registers(begin, end, [&](std::size_t k, auto registers) {
+            constexpr std::size_t n = decltype(registers)::value;
+            const auto sums = apply<n, 2>(entries, f, k);
+            for (std::size_t v = 0; v < n; ++v) {
+                store(y[i] + k + v * lane_count, sums.of[0][v]);
+                store(z[i] + k + v * lane_count, sums.of[1][v]);
+            }
+        });
+    }
+}
+
+/// Gradients of the three components across the pipe, for `carry_muscl`.
+struct Gradients {
+    VectorField y, z; // d/dy, d/dz [1/s]
+};
+
+/// Edge by edge, with the weights c_ij of the gradient and the speed q = c_ij . (u_i + u_j) / 2:
+///
+///   sum_j q (f_j - f_i) - |q| (f_j - f_i - r_ij . (grad f_i + grad f_j) / 2)
+///
+/// Rusanov's damping acts on the jump between linear reconstructions (MUSCL), without a limiter.
+/// Slower and more damped than `carry_upwind`, and it holds where no viscosity helps.
+/// Sources: Rusanov (1961), doi:10.1016/0041-5553(62)90062-9; van Leer (1979),
+/// doi:10.1016/0021-9991(79)90145-1.
+inline void carry_muscl(const Section& section, const Stencil<2>& stencil, const Axial& axial,
+                        const VectorField& u, const Gradients& gradients, std::size_t begin,
+                        std::size_t end, Carried out) {
+    const Field* const component[3] = {&u.x, &u.y, &u.z};
+    const Field* const slope_y[3] = {&gradients.y.x, &gradients.y.y, &gradients.y.z};
+    const Field* const slope_z[3] = {&gradients.z.x, &gradients.z.y, &gradients.z.z};
+    Field* const result[3] = {&out.acceleration.x, &out.acceleration.y, &out.acceleration.z};
+    for (std::size_t i = 0; i < section.interior_count(); ++i) {
+        for (std::size_t k = begin; k < end; k += lane_count) {
+            const Lanes uy = load(u.y[i] + k), uz = load(u.z[i] + k);
+            Lanes f[3], gy[3], gz[3], sum[3]{};
+            for (std::size_t a = 0; a < 3; ++a) {
+                f[a] = load((*component[a])[i] + k);
+                gy[a] = load((*slope_y[a])[i] + k);
+                gz[a] = load((*slope_z[a])[i] + k);
+            }
+            for (const auto& e : stencil.of(i)) {
+                if (e.node == i) continue;
+                const std::size_t j = e.node;
+                const Vec3 r = section.place(j) - section.place(i);
+                const Lanes q = (e.weight[0] / 2) * (uy + load(u.y[j] + k)) +
+                                (e.weight[1] / 2) * (uz + load(u.z[j] + k));
+                const Lanes size = abs(q);
+                for (std::size_t a = 0; a < 3; ++a) {
+                    const Lanes jump = load((*component[a])[j] + k) - f[a];
+                    const Lanes smooth = (r.y / 2) * (gy[a] + load((*slope_y[a])[j] + k)) +
+                                         (r.z / 2) * (gz[a] + load((*slope_z[a])[j] + k));
+                    sum[a] += q * jump - size * (jump - smooth);
+                }
+            }
+            Vector<Lanes> gradient[3];
+            for (std::size_t a = 0; a < 3; ++a) {
+                Lanes slope;
+                const Lanes along =
+                    carried_along(axial, load(u.x[i] + k), (*component[a])[i] + k, slope);
+                store((*result[a])[i] + k, -(along + sum[a]));
+                gradient[a] = {slope, gy[a], gz[a]};
+            }
+            store(out.strain[i] + k, squared_strain(gradient[0], gradient[1], gradient[2]));
+        }
+    }
+}
+
+} // namespace mpsdem::mps::eulerian

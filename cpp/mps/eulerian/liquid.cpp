@@ -1,0 +1,529 @@
+#include "mps/eulerian/liquid.hpp"
+
+#include "core/check.hpp"
+#include "core/parallel.hpp"
+#include "mps/eulerian/least_squares.hpp"
+#include "mps/eulerian/viscous.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace mpsdem::mps::eulerian {
+
+namespace {
+
+constexpr Real most_substeps = 1e5; // of one call; beyond it the speeds have run away
+// [-] of the step at which the Runge-Kutta scheme leaves the negative real axis, on which viscosity
+// has its eigenvalues: 2 for two stages, 2.51 for three. The rest is for convection.
+constexpr Real viscous_share = 0.8;
+
+struct Weights {
+    std::size_t count;
+    Real kept[3]; // a of each stage
+};
+
+Weights weights_of(Scheme scheme) {
+    if (scheme == Scheme::rk2) return {2, {0, 1. / 2, 0}};
+    return {3, {0, 3. / 4, 1. / 3}};
+}
+
+Real viscous_limit(Scheme scheme) {
+    return viscous_share * (scheme == Scheme::rk2 ? 2.0 : 2.51);
+}
+
+linear::CrossSectionSolver solver_of(const Section& section, const Stencil<2>& gradient,
+                                     const Stencil<1>& laplacian, const Axial& axial,
+                                     std::size_t stations) {
+    const std::size_t all = section.size(), inner = section.interior_count();
+    const std::vector<Real> interior = laplacian.dense(all, 0);
+    const std::vector<Real> y = gradient.dense(all, 0), z = gradient.dense(all, 1);
+    std::vector<Real> wall(section.wall_count() * all);
+    for (std::size_t w = 0; w < section.wall_count(); ++w) {
+        const Vec3 n = section.outward(inner + w);
+        for (std::size_t j = 0; j < all; ++j) {
+            const std::size_t at = (inner + w) * all + j;
+            wall[w * all + j] = n.y * y[at] + n.z * z[at];
+        }
+    }
+    return {std::span(interior).first(inner * all), wall, inner, section.wall_count(),
+            axial.second_symbol(stations), stations};
+}
+
+} // namespace
+
+Liquid::Liquid(const Section& section, Real pipe_length, std::span<const Vec3> velocity,
+               Real density, Real kinematic_viscosity, Real roughness, Flow flow,
+               const Drive& drive, const Numerics& numerics)
+    : section_(section), pipe_length_(pipe_length),
+      axial_{pipe_length / static_cast<Real>(numerics.stations)}, chunks_(numerics.stations),
+      density_(density), viscosity_(kinematic_viscosity), flow_(flow), drive_(drive),
+      numerics_(numerics), wall_law_(kinematic_viscosity, roughness, section),
+      mixing_length_(section.pipe_radius()), gradient_stencil_(gradient_stencil(section)),
+      laplacian_stencil_(laplacian_stencil(section)),
+      upwind_stencil_(numerics.convection == Convection::upwind ? upwind_stencil(section)
+                                                                : Stencil<4>()),
+      viscous_bound_(laplacian_stencil_.bound(section.interior_count(), 0) +
+                     4 / (axial_.spacing * axial_.spacing)),
+      bore_area_(section.bore_area()), interior_area_(section.interior_area()),
+      layer_area_(section.area(section.layer())),
+      solver_(solver_of(section, gradient_stencil_, laplacian_stencil_, axial_,
+                        numerics.stations)),
+      u_(section.size(), numerics.stations), start_(section.size(), numerics.stations),
+      star_(section.size(), numerics.stations), strain_(section.size(), numerics.stations),
+      nu_t_(section.size(), numerics.stations), phi_(section.size(), numerics.stations),
+      friction_velocity_(section.wall_count(), numerics.stations), drag_(numerics.stations),
+      flux_(numerics.stations), viscous_force_(numerics.stations), of_chunk_(chunks_.count()) {
+    require(pipe_length > 0, "Liquid: pipe_length must be > 0 m");
+    require(numerics.stations >= 8 && numerics.stations % lane_count == 0,
+            "Liquid: stations must be a multiple of 4, and at least 8");
+    require(velocity.size() == size(), "Liquid: velocity must have one vector per node and station");
+    require(density > 0, "Liquid: density must be > 0 kg/m3");
+    require(numerics.courant > 0, "Liquid: courant must be > 0");
+    require(numerics.threads >= 1, "Liquid: threads must be >= 1");
+    if (numerics.convection == Convection::muscl) {
+        gradients_.y = VectorField(section.size(), stations());
+        gradients_.z = VectorField(section.size(), stations());
+    }
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        std::fill_n(nu_t_[i], stations(), viscosity_);
+        nu_t_.wrap(i, 0, stations());
+        if (i >= section_.interior_count()) continue;
+        for (std::size_t k = 0; k < stations(); ++k) {
+            const Vec3& v = velocity[i * stations() + k];
+            u_.x[i][k] = v.x;
+            u_.y[i][k] = v.y;
+            u_.z[i][k] = v.z;
+        }
+    }
+    for (std::size_t c = 0; c < chunks_.count(); ++c) meet_wall(chunks_.begin(c), chunks_.end(c));
+    u_.x.wrap();
+    u_.y.wrap();
+    u_.z.wrap();
+}
+
+void Liquid::momentum_source(std::span<const Vec3> acceleration) {
+    if (acceleration.empty()) {
+        source_ = VectorField();
+        return;
+    }
+    require(acceleration.size() == size(),
+            "momentum_source: one acceleration per node and station is needed");
+    if (source_.x.rows() == 0) source_ = VectorField(section_.size(), stations());
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        for (std::size_t k = 0; k < stations(); ++k) {
+            const Vec3& a = acceleration[i * stations() + k];
+            source_.x[i][k] = a.x;
+            source_.y[i][k] = a.y;
+            source_.z[i][k] = a.z;
+        }
+    }
+}
+
+AdvanceReport Liquid::advance(Real dt) {
+    require(dt > 0, "advance: dt must be > 0 s");
+    AdvanceReport report;
+    const Weights weights = weights_of(numerics_.scheme);
+    report.shortest = std::numeric_limits<Real>::infinity();
+    const Real before = interior_velocity();
+    for (Real left = dt; left > 1e-9 * dt;) {
+        transport();
+        const Real count = std::ceil(left / allowed(report) - 1e-9);
+        report.sound = count < most_substeps;
+        if (!report.sound) break;
+        if (count <= 1) report.limit = Limit::none;
+        const Real length = left / std::max(count, 1.);
+        Real driven = 0, taken = 0; // [m/s] given and taken along the pipe over the substep
+        for (std::size_t s = 0; s < weights.count; ++s) {
+            const Stage stage{weights.kept[s], length};
+            const Real share = 1 - stage.kept;
+            if (s > 0) transport();
+            predict(stage);
+            if (s == 0) std::swap(u_, start_);
+            taken = share * (taken + length * mean_drag() / interior_area_);
+            const Real given = share * length / density_ * drive_.pressure_gradient.value_or(0);
+            const Real held =
+                (drive_.bulk_velocity - sum_of_chunks([&](std::size_t c) {
+                     Real sum = 0;
+                     for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); ++k)
+                         sum += flux_[k];
+                     return sum / (bore_area_ * static_cast<Real>(stations()));
+                 })) *
+                bore_area_ / interior_area_;
+            const Real kick = drive_.pressure_gradient ? given : held;
+            project(stage, report);
+            driven = share * driven + kick + correct(kick);
+        }
+        gradient_ = density_ * driven / length;
+        left -= length;
+        ++report.substeps;
+        report.mean_gradient += density_ * driven / dt;
+        report.friction -= density_ * taken / dt;
+    }
+    report.unexplained = density_ * (interior_velocity() - before) / dt - report.mean_gradient +
+                         report.friction - density_ * body_force_.x;
+    report.divergence = residual_divergence();
+    return report;
+}
+
+template <class Value>
+Real Liquid::sum_of_chunks(const Value& value) const {
+    Real sum = 0;
+    for (std::size_t c = 0; c < chunks_.count(); ++c) sum += value(c);
+    return sum;
+}
+
+/// -(u . grad) u into star_, and the viscosity.
+void Liquid::transport() {
+    const Carried out{star_, strain_};
+    if (numerics_.convection == Convection::muscl) {
+        parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+            const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+            gradient_across(gradient_stencil_, u_.x, begin, end, gradients_.y.x, gradients_.z.x);
+            gradient_across(gradient_stencil_, u_.y, begin, end, gradients_.y.y, gradients_.z.y);
+            gradient_across(gradient_stencil_, u_.z, begin, end, gradients_.y.z, gradients_.z.z);
+        });
+    }
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        if (numerics_.convection == Convection::muscl)
+            carry_muscl(section_, gradient_stencil_, axial_, u_, gradients_, begin, end, out);
+        else
+            carry_upwind(section_, upwind_stencil_, axial_, u_, begin, end, out);
+        of_chunk_[c] = flow_ == Flow::turbulent
+                           ? wall_law_.viscosity(section_, mixing_length_, strain_,
+                                                 friction_velocity_, begin, end, nu_t_)
+                           : viscosity_;
+    });
+    largest_viscosity_ = 0;
+    for (const Real nu : of_chunk_) largest_viscosity_ = std::max(largest_viscosity_, nu);
+}
+
+/// Longest step that is stable now [s]; not a number where a speed is none.
+Real Liquid::allowed(AdvanceReport& report) const {
+    Lanes most{}, bad{};
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        for (std::size_t k = 0; k < stations(); k += lane_count) {
+            const Lanes y = load(u_.y[i] + k), z = load(u_.z[i] + k);
+            const Lanes rate = (1 / axial_.spacing) * abs(load(u_.x[i] + k)) +
+                               (1 / section_.spacing()) * sqrt(y * y + z * z);
+            most = max(most, rate);
+            bad += rate - rate; // 0, or not a number
+        }
+    }
+    const Real courant = numerics_.courant / (largest(most) + sum(bad));
+    const Real viscous = viscous_limit(numerics_.scheme) / (viscous_bound_ * largest_viscosity_);
+    report.limit = courant < viscous ? Limit::courant : Limit::viscosity;
+    const Real step = courant < viscous ? courant : viscous;
+    report.shortest = std::min(report.shortest, step);
+    return std::isnan(courant) ? courant : step;
+}
+
+/// u* from the accelerations in star_, and its flux through each plane.
+void Liquid::predict(const Stage& stage) {
+    const Real kept = stage.kept, share = 1 - kept;
+    const bool turbulent = flow_ == Flow::turbulent, sourced = source_.x.rows() > 0;
+    const Vector<Lanes> body{body_force_.x + Lanes{}, body_force_.y + Lanes{},
+                             body_force_.z + Lanes{}};
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        const std::size_t inner = section_.interior_count();
+        std::fill(viscous_force_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  viscous_force_.begin() + static_cast<std::ptrdiff_t>(end), 0);
+        for (std::size_t i = 0; i < inner; ++i) {
+            const auto entries = laplacian_stencil_.of(i);
+            const Real area = section_.area(i);
+            for (std::size_t k = begin; k < end; k += lane_count) {
+                const auto viscous = viscous_acceleration(entries, axial_, nu_t_, u_, i,
+                                                          static_cast<std::ptrdiff_t>(k));
+                Vector<Lanes> a = viscous + body;
+                if (sourced) {
+                    a += Vector<Lanes>{load(source_.x[i] + k), load(source_.y[i] + k),
+                                       load(source_.z[i] + k)};
+                }
+                const auto advanced = [&](const Field& u, const Field& start, Field& star,
+                                          Lanes acceleration) {
+                    acceleration += load(star[i] + k);
+                    Lanes value = load(u[i] + k) + stage.dt * acceleration;
+                    if (kept > 0) value = kept * load(start[i] + k) + share * value;
+                    store(star[i] + k, value);
+                };
+                advanced(u_.x, start_.x, star_.x, a.x);
+                advanced(u_.y, start_.y, star_.y, a.y);
+                advanced(u_.z, start_.z, star_.z, a.z);
+                store(&viscous_force_[k], load(&viscous_force_[k]) + area * viscous.x);
+            }
+        }
+        if (turbulent) { // the viscous terms of a plane sum to the wall's drag on it
+            for (const Index i : section_.layer()) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    const Real missing =
+                        drag_[k] * interior_area_ / bore_area_ - viscous_force_[k];
+                    star_.x[i][k] += share * stage.dt * missing / layer_area_;
+                }
+            }
+        }
+        for (std::size_t i = inner; i < section_.size(); ++i) {
+            // what would push liquid through the wall is met by the pressure there
+            const Vec3 n = section_.outward(i);
+            const auto entries = laplacian_stencil_.of(i);
+            for (std::size_t k = begin; k < end; k += lane_count) {
+                Vector<Lanes> a = body;
+                if (sourced) {
+                    a += Vector<Lanes>{load(source_.x[i] + k), load(source_.y[i] + k),
+                                       load(source_.z[i] + k)};
+                }
+                if (!turbulent) {
+                    a += viscous_acceleration(entries, axial_, nu_t_, u_, i,
+                                              static_cast<std::ptrdiff_t>(k));
+                }
+                const Lanes through = share * stage.dt * (n.y * a.y + n.z * a.z);
+                store(star_.x[i] + k, load(u_.x[i] + k));
+                store(star_.y[i] + k, load(u_.y[i] + k) + n.y * through);
+                store(star_.z[i] + k, load(u_.z[i] + k) + n.z * through);
+            }
+        }
+        std::fill(flux_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  flux_.begin() + static_cast<std::ptrdiff_t>(end), 0);
+        for (std::size_t i = 0; i < section_.size(); ++i) {
+            for (std::size_t k = begin; k < end; k += lane_count)
+                store(&flux_[k], load(&flux_[k]) + section_.area(i) * load(star_.x[i] + k));
+            star_.x.wrap(i, begin, end);
+        }
+    });
+}
+
+/// Divergence at the inner nodes [1/s].
+void Liquid::find_divergence(const VectorField& field, Field& result) {
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+            const auto entries = gradient_stencil_.of(i);
+            for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); k += lane_count) {
+                Lanes sum = axial_.first(field.x[i] + k);
+                for (const auto& e : entries) {
+                    sum += e.weight[0] * load(field.y[e.node] + k) +
+                           e.weight[1] * load(field.z[e.node] + k);
+                }
+                store(result[i] + k, sum);
+            }
+        }
+    });
+}
+
+/// Pressure of u*: phi.
+void Liquid::project(const Stage& stage, AdvanceReport& report) {
+    find_divergence(star_, phi_);
+    const bool at_wall = flow_ == Flow::laminar || source_.x.rows() > 0 ||
+                         body_force_.y != 0 || body_force_.z != 0;
+    if (at_wall) {
+        for (std::size_t i = section_.interior_count(); i < section_.size(); ++i) {
+            const Vec3 n = section_.outward(i);
+            for (std::size_t k = 0; k < stations(); k += lane_count)
+                store(phi_[i] + k, n.y * load(star_.y[i] + k) + n.z * load(star_.z[i] + k));
+        }
+    }
+    using Source = linear::CrossSectionSolver::WallSource;
+    const auto start = std::chrono::steady_clock::now();
+    solver_.solve(at_wall ? Source::given : Source::none, numerics_.threads, phi_);
+    report.solve_seconds +=
+        std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
+    pressure_scale_ = density_ / ((1 - stage.kept) * stage.dt);
+}
+
+/// u = u* - grad phi + the kick along the pipe [m/s]; then exactly what holds the bulk velocity.
+/// Returns that last part.
+Real Liquid::correct(Real kick) {
+    const std::size_t inner = section_.interior_count();
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        for (std::size_t i = 0; i < inner; ++i) {
+            const auto entries = gradient_stencil_.of(i);
+            by_registers(begin, end, [&](std::size_t k, auto registers) {
+                constexpr std::size_t n = decltype(registers)::value;
+                const auto slope = apply<n, 2>(entries, phi_, k);
+                for (std::size_t v = 0; v < n; ++v) {
+                    const std::size_t at = k + v * lane_count;
+                    store(u_.x[i] + at, load(star_.x[i] + at) - axial_.first(phi_[i] + at) + kick);
+                    store(u_.y[i] + at, load(star_.y[i] + at) - slope.of[0][v]);
+                    store(u_.z[i] + at, load(star_.z[i] + at) - slope.of[1][v]);
+                }
+            });
+        }
+        meet_wall(begin, end);
+        Lanes flux{};
+        for (std::size_t i = 0; i < section_.size(); ++i) {
+            Lanes sum{};
+            for (std::size_t k = begin; k < end; k += lane_count) sum += load(u_.x[i] + k);
+            flux += section_.area(i) * sum;
+            u_.x.wrap(i, begin, end);
+            u_.y.wrap(i, begin, end);
+            u_.z.wrap(i, begin, end);
+        }
+        of_chunk_[c] = sum(flux);
+    });
+    if (drive_.pressure_gradient) return 0;
+    const Real flux = sum_of_chunks([&](std::size_t c) { return of_chunk_[c]; });
+    const Real rest = (drive_.bulk_velocity * bore_area_ - flux / static_cast<Real>(stations())) /
+                      interior_area_;
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        for (std::size_t i = 0; i < inner; ++i) {
+            for (std::size_t k = begin; k < end; k += lane_count)
+                store(u_.x[i] + k, load(u_.x[i] + k) + rest);
+            u_.x.wrap(i, begin, end);
+        }
+    });
+    return rest;
+}
+
+/// Velocity on the wall: none in laminar flow.
+void Liquid::meet_wall(std::size_t begin, std::size_t end) {
+    if (flow_ == Flow::turbulent)
+        wall_law_.slip(section_, begin, end, {u_, friction_velocity_, drag_});
+}
+
+/// Force of the walls on the inner nodes over density and length, mean over the stations [m3/s2]:
+/// in turbulent flow that of the wall law, in laminar flow what the viscous terms come to.
+Real Liquid::mean_drag() const {
+    const bool turbulent = flow_ == Flow::turbulent;
+    Real total = 0;
+    for (const Real force : turbulent ? drag_ : viscous_force_) total += force;
+    const Real share = turbulent ? interior_area_ / bore_area_ : 1;
+    return share * total / static_cast<Real>(stations());
+}
+
+Real Liquid::residual_divergence() {
+    find_divergence(u_, strain_);
+    Real square = 0, fastest = 0;
+    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+        for (std::size_t k = 0; k < stations(); ++k) {
+            square += strain_[i][k] * strain_[i][k];
+            fastest = std::max({fastest, std::abs(u_.x[i][k]), std::abs(u_.y[i][k]),
+                                std::abs(u_.z[i][k])});
+        }
+    }
+    if (!(fastest > 0)) return 0;
+    const auto count = static_cast<Real>(section_.interior_count() * stations());
+    return std::sqrt(square / count) * section_.spacing() / fastest;
+}
+
+std::vector<Real> Liquid::pressure() const {
+    std::vector<Real> out(size());
+    Real mean = 0, weights = 0;
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        for (std::size_t k = 0; k < stations(); ++k) {
+            out[i * stations() + k] = pressure_scale_ * phi_[i][k];
+            mean += section_.area(i) * out[i * stations() + k];
+            weights += section_.area(i);
+        }
+    }
+    for (Real& p : out) p -= mean / weights;
+    return out;
+}
+
+std::vector<Real> Liquid::void_fraction() const {
+    return std::vector<Real>(size(), 1);
+}
+
+Real Liquid::bulk_velocity() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k) row += u_.x[i][k];
+        sum += section_.area(i) * row;
+    }
+    return sum / (bore_area_ * static_cast<Real>(stations()));
+}
+
+Real Liquid::interior_velocity() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k) row += u_.x[i][k];
+        sum += section_.area(i) * row;
+    }
+    return sum / (interior_area_ * static_cast<Real>(stations()));
+}
+
+Real Liquid::wall_shear() const {
+    Real total = 0;
+    for (const Real force : drag_) total -= force;
+    const Real perimeter = section_.wall_share() * static_cast<Real>(section_.wall_count());
+    return density_ * total / (perimeter * static_cast<Real>(stations()));
+}
+
+Real Liquid::kinetic_energy() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k) {
+            const Vec3 u{u_.x[i][k], u_.y[i][k], u_.z[i][k]};
+            row += dot(u, u) / 2;
+        }
+        sum += section_.area(i) * row;
+    }
+    return sum / (bore_area_ * static_cast<Real>(stations()));
+}
+
+Real Liquid::pressure_noise() const {
+    const std::vector<Real> p = pressure();
+    Real sum = 0;
+    for (std::size_t i = 0; i < section_.size(); ++i)
+        for (std::size_t k = 0; k < stations(); ++k)
+            sum += section_.area(i) * p[i * stations() + k] * p[i * stations() + k];
+    return std::sqrt(sum / (bore_area_ * static_cast<Real>(stations())));
+}
+
+namespace {
+
+std::vector<Real> packed(const Field& rows) {
+    std::vector<Real> out;
+    out.reserve(rows.rows() * rows.stations());
+    for (std::size_t i = 0; i < rows.rows(); ++i)
+        out.insert(out.end(), rows[i], rows[i] + rows.stations());
+    return out;
+}
+
+void unpack(std::span<const Real> values, Field& rows) {
+    for (std::size_t i = 0; i < rows.rows(); ++i)
+        std::copy_n(values.data() + i * rows.stations(), rows.stations(), rows[i]);
+    rows.wrap();
+}
+
+} // namespace
+
+Liquid::Snapshot Liquid::snapshot() const {
+    Snapshot out{{}, packed(phi_), packed(friction_velocity_), drag_, gradient_};
+    for (Real& p : out.pressure) p *= pressure_scale_;
+    out.velocity.reserve(size());
+    for (std::size_t i = 0; i < section_.size(); ++i)
+        for (std::size_t k = 0; k < stations(); ++k)
+            out.velocity.push_back({u_.x[i][k], u_.y[i][k], u_.z[i][k]});
+    return out;
+}
+
+void Liquid::restore(const Snapshot& s) {
+    require(s.velocity.size() == size() && s.pressure.size() == size() &&
+                s.friction_velocity.size() == section_.wall_count() * stations() &&
+                s.drag.size() == stations(),
+            "restore: the snapshot belongs to another liquid");
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        for (std::size_t k = 0; k < stations(); ++k) {
+            const Vec3& v = s.velocity[i * stations() + k];
+            u_.x[i][k] = v.x;
+            u_.y[i][k] = v.y;
+            u_.z[i][k] = v.z;
+        }
+    }
+    u_.x.wrap();
+    u_.y.wrap();
+    u_.z.wrap();
+    unpack(s.pressure, phi_);
+    unpack(s.friction_velocity, friction_velocity_);
+    pressure_scale_ = 1;
+    drag_ = s.drag;
+    gradient_ = s.gradient;
+}
+
+} // namespace mpsdem::mps::eulerian
