@@ -26,9 +26,12 @@ Section section_of(const Array<Real>& place, const Array<Real>& area, std::size_
 
 const char* name_of(mps::eulerian::Limit limit) {
     switch (limit) {
-    case mps::eulerian::Limit::courant: return "courant";
-    case mps::eulerian::Limit::viscosity: return "viscosity";
-    case mps::eulerian::Limit::none: break;
+    case mps::eulerian::Limit::courant:
+        return "courant";
+    case mps::eulerian::Limit::viscosity:
+        return "viscosity";
+    case mps::eulerian::Limit::none:
+        break;
     }
     return "none";
 }
@@ -94,8 +97,9 @@ void bind_eulerian(py::module_ m) {
                       "Loss of pressure along the pipe, mean over the call [Pa/m].")
         .def_readonly("friction", &AdvanceReport::friction,
                       "What the walls take up, mean over the call [Pa/m].")
-        .def_readonly("unexplained", &AdvanceReport::unexplained,
-                      "Of the axial momentum: what convection and pressure add, and must not [Pa/m].")
+        .def_readonly(
+            "unexplained", &AdvanceReport::unexplained,
+            "Of the axial momentum: what convection and pressure add, and must not [Pa/m].")
         .def_readonly("divergence", &AdvanceReport::divergence,
                       "Root mean square divergence at the end, times spacing over speed [-].")
         .def_readonly("solve_seconds", &AdvanceReport::solve_seconds,
@@ -160,8 +164,8 @@ Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
                  const auto carried = chosen<Convection>(
                      convection, "convection",
                      {{"upwind", Convection::upwind}, {"muscl", Convection::muscl}});
-                 const auto steps = chosen<Scheme>(scheme, "scheme",
-                                                   {{"rk2", Scheme::rk2}, {"rk3", Scheme::rk3}});
+                 const auto steps =
+                     chosen<Scheme>(scheme, "scheme", {{"rk2", Scheme::rk2}, {"rk3", Scheme::rk3}});
                  const Real usual = steps == Scheme::rk2 ? 0.8 : 1.2;
                  return Liquid(section_of(place, area, wall_count, pipe_radius, spacing),
                                pipe_length, node_vectors(velocity, "velocity"), density,
@@ -245,8 +249,9 @@ Returns
         .def_property_readonly("kinetic_energy", &Liquid::kinetic_energy, "Per mass [J/kg].")
         .def_property_readonly("pressure_noise", &Liquid::pressure_noise,
                                "Scatter of the pressure about its mean [Pa].")
-        .def_property_readonly("largest_viscosity", &Liquid::largest_viscosity,
-                               "Molecular and eddy viscosity, the largest of the last stage [m2/s].")
+        .def_property_readonly(
+            "largest_viscosity", &Liquid::largest_viscosity,
+            "Molecular and eddy viscosity, the largest of the last stage [m2/s].")
         .def(
             "state",
             [](const Liquid& l) {
@@ -264,8 +269,8 @@ Returns
                 const auto friction = state["friction_velocity"].cast<Array<Real>>();
                 const auto drag = state["drag"].cast<Array<Real>>();
                 l.restore({copy(vectors(velocity, "velocity")), copy(values(pressure, "pressure")),
-                           copy(values(friction, "friction_velocity")),
-                           copy(values(drag, "drag")), state["gradient"].cast<Real>()});
+                           copy(values(friction, "friction_velocity")), copy(values(drag, "drag")),
+                           state["gradient"].cast<Real>()});
             },
             "state"_a, "Continue bit-equal from a `state` of the same liquid.");
 }

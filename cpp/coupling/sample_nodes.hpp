@@ -1,9 +1,8 @@
 #pragma once
 
+#include "core/field.hpp"
 #include "coupling/smoothing_kernel.hpp"
 #include "mps/eulerian/section.hpp"
-
-#include "core/field.hpp"
 
 #include <span>
 #include <vector>

@@ -2,9 +2,8 @@
 
 #include "core/parallel.hpp"
 
-#include <unsupported/Eigen/FFT>
-
 #include <complex>
+#include <unsupported/Eigen/FFT>
 #include <vector>
 
 namespace mpsdem::linear {
@@ -27,12 +26,11 @@ struct AxialFourier::Plans {
 };
 
 AxialFourier::AxialFourier(std::size_t rows, std::size_t stations)
-    : stations_(stations),
-      columns_((stations + 2 + lane_count - 1) / lane_count * lane_count),
+    : stations_(stations), columns_((stations + 2 + lane_count - 1) / lane_count * lane_count),
       plans_(std::make_unique<Plans>()) {
-    const Transform plain(Transform::impl_type(),
-                          static_cast<Transform::Flag>(Transform::HalfSpectrum |
-                                                       Transform::Unscaled));
+    const Transform plain(
+        Transform::impl_type(),
+        static_cast<Transform::Flag>(Transform::HalfSpectrum | Transform::Unscaled));
     plans_->of_group.assign(std::min(rows, most_groups), plain);
 }
 

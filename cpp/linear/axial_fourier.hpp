@@ -20,8 +20,10 @@ public:
     [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
 
     /// Of the rows [0, count).
-    void forward(const Field& values, std::size_t count, int threads, std::span<Real> spectra) const;
-    void inverse(std::span<const Real> spectra, std::size_t count, int threads, Field& values) const;
+    void forward(const Field& values, std::size_t count, int threads,
+                 std::span<Real> spectra) const;
+    void inverse(std::span<const Real> spectra, std::size_t count, int threads,
+                 Field& values) const;
 
 private:
     struct Plans;

@@ -40,10 +40,10 @@ struct CrossSectionSolver::Basis {
     std::size_t interior, wall;
     AxialFourier fourier;
     std::size_t columns;
-    Matrix to_modes;      // interior x interior
-    Matrix wall_to_modes; // interior x wall
-    Matrix from_modes;    // all x interior
-    Matrix wall_to_wall;  // wall x wall
+    Matrix to_modes;                   // interior x interior
+    Matrix wall_to_modes;              // interior x wall
+    Matrix from_modes;                 // all x interior
+    Matrix wall_to_wall;               // wall x wall
     std::vector<Real> real, imaginary; // [1/m2] of each mode; a pair stands as two equal entries
     std::vector<Real> axial;           // [1/m2] of each column of the spectra
     Real smallest = 0;                 // [1/m2] a divisor below it counts as zero

@@ -18,8 +18,8 @@ constexpr Real upwind_reach = 2.6;    // [-]
 constexpr Real upwind_bias = 0.8;     // [-] how much more what lies upwind counts
 constexpr Real growth = 1.12;         // [-] of r_e where the fit is poor
 constexpr Real largest_reach = 8;     // [-] r_e over the spacing
-// [-] of the smallest over the largest eigenvalue of a fit, in units of r_e. On rings 3e-3 and more;
-// below it a fit has large weights of both signs.
+// [-] of the smallest over the largest eigenvalue of a fit, in units of r_e. On rings 3e-3 and
+// more; below it a fit has large weights of both signs.
 constexpr Real poorest_fit = 1e-3;
 
 using Basis = Eigen::Matrix<Real, 5, 1>;
@@ -48,8 +48,8 @@ Basis basis(const Vec3& r, Real radius) {
 /// Coefficients c over (f_j - f_i), one column per neighbor, in units of the radius; none where the
 /// fit is poor.
 template <class Factor>
-std::optional<Eigen::Matrix<Real, 5, Eigen::Dynamic>>
-fit(std::span<const Neighbor> neighbors, Real radius, const Factor& factor) {
+std::optional<Eigen::Matrix<Real, 5, Eigen::Dynamic>> fit(std::span<const Neighbor> neighbors,
+                                                          Real radius, const Factor& factor) {
     const Weight weight{radius};
     Normal normal = Normal::Zero();
     Eigen::Matrix<Real, 5, Eigen::Dynamic> right(5, static_cast<Eigen::Index>(neighbors.size()));
@@ -156,8 +156,7 @@ Stencil<4> upwind_stencil(const Section& section) {
                 for (std::size_t k = 0; k < neighbors.size(); ++k) {
                     const auto column = static_cast<Eigen::Index>(k);
                     rows[i][neighbors[k].node][2 + a] =
-                        ((*behind)(component, column) - (*ahead)(component, column)) /
-                        (2 * radius);
+                        ((*behind)(component, column) - (*ahead)(component, column)) / (2 * radius);
                 }
             }
             return true;

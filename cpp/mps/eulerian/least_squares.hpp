@@ -5,7 +5,8 @@
 
 namespace mpsdem::mps::eulerian {
 
-/// Operators across the pipe from the quadratic polynomial through f_i that fits the neighbors best:
+/// Operators across the pipe from the quadratic polynomial through f_i that fits the neighbors
+/// best:
 ///
 ///   minimise sum_j W (p_j . c - (f_j - f_i))^2        p = (y, z, y^2 / 2, z^2 / 2, yz) of r_ij
 ///

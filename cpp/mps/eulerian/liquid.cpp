@@ -47,8 +47,8 @@ linear::CrossSectionSolver solver_of(const Section& section, const Stencil<2>& g
             wall[w * all + j] = n.y * y[at] + n.z * z[at];
         }
     }
-    return {std::span(interior).first(inner * all), wall, inner, section.wall_count(),
-            axial.second_symbol(stations), stations};
+    return {std::span(interior).first(inner * all), wall,    inner, section.wall_count(),
+            axial.second_symbol(stations),          stations};
 }
 
 } // namespace
@@ -68,8 +68,7 @@ Liquid::Liquid(const Section& section, Real pipe_length, std::span<const Vec3> v
                      4 / (axial_.spacing * axial_.spacing)),
       bore_area_(section.bore_area()), interior_area_(section.interior_area()),
       layer_area_(section.area(section.layer())),
-      solver_(solver_of(section, gradient_stencil_, laplacian_stencil_, axial_,
-                        numerics.stations)),
+      solver_(solver_of(section, gradient_stencil_, laplacian_stencil_, axial_, numerics.stations)),
       u_(section.size(), numerics.stations), start_(section.size(), numerics.stations),
       star_(section.size(), numerics.stations), strain_(section.size(), numerics.stations),
       nu_t_(section.size(), numerics.stations), phi_(section.size(), numerics.stations),
@@ -78,7 +77,8 @@ Liquid::Liquid(const Section& section, Real pipe_length, std::span<const Vec3> v
     require(pipe_length > 0, "Liquid: pipe_length must be > 0 m");
     require(numerics.stations >= 8 && numerics.stations % lane_count == 0,
             "Liquid: stations must be a multiple of 4, and at least 8");
-    require(velocity.size() == size(), "Liquid: velocity must have one vector per node and station");
+    require(velocity.size() == size(),
+            "Liquid: velocity must have one vector per node and station");
     require(density > 0, "Liquid: density must be > 0 kg/m3");
     require(numerics.courant > 0, "Liquid: courant must be > 0");
     require(numerics.threads >= 1, "Liquid: threads must be >= 1");
@@ -143,14 +143,13 @@ AdvanceReport Liquid::advance(Real dt) {
             if (s == 0) std::swap(u_, start_);
             taken = share * (taken + length * mean_drag() / interior_area_);
             const Real given = share * length / density_ * drive_.pressure_gradient.value_or(0);
-            const Real held =
-                (drive_.bulk_velocity - sum_of_chunks([&](std::size_t c) {
-                     Real sum = 0;
-                     for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); ++k)
-                         sum += flux_[k];
-                     return sum / (bore_area_ * static_cast<Real>(stations()));
-                 })) *
-                bore_area_ / interior_area_;
+            const Real held = (drive_.bulk_velocity - sum_of_chunks([&](std::size_t c) {
+                                   Real sum = 0;
+                                   for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); ++k)
+                                       sum += flux_[k];
+                                   return sum / (bore_area_ * static_cast<Real>(stations()));
+                               })) *
+                              bore_area_ / interior_area_;
             const Real kick = drive_.pressure_gradient ? given : held;
             project(stage, report);
             driven = share * driven + kick + correct(kick);
@@ -177,6 +176,7 @@ Real Liquid::sum_of_chunks(const Value& value) const {
 /// -(u . grad) u into star_, and the viscosity.
 void Liquid::transport() {
     const Carried out{star_, strain_};
+    const CrossDamping damping = flow_ == Flow::laminar ? laminar_damping : turbulent_damping;
     if (numerics_.convection == Convection::muscl) {
         parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
             const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
@@ -188,9 +188,10 @@ void Liquid::transport() {
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
         if (numerics_.convection == Convection::muscl)
-            carry_muscl(section_, gradient_stencil_, axial_, u_, gradients_, begin, end, out);
+            carry_muscl(section_, gradient_stencil_, axial_, damping, u_, gradients_, begin, end,
+                        out);
         else
-            carry_upwind(section_, upwind_stencil_, axial_, u_, begin, end, out);
+            carry_upwind(section_, upwind_stencil_, axial_, damping, u_, begin, end, out);
         of_chunk_[c] = flow_ == Flow::turbulent
                            ? wall_law_.viscosity(section_, mixing_length_, strain_,
                                                  friction_velocity_, begin, end, nu_t_)
@@ -258,15 +259,14 @@ void Liquid::predict(const Stage& stage) {
         if (turbulent) { // the viscous terms of a plane sum to the wall's drag on it
             for (const Index i : section_.layer()) {
                 for (std::size_t k = begin; k < end; ++k) {
-                    const Real missing =
-                        drag_[k] * interior_area_ / bore_area_ - viscous_force_[k];
+                    const Real missing = drag_[k] * interior_area_ / bore_area_ - viscous_force_[k];
                     star_.x[i][k] += share * stage.dt * missing / layer_area_;
                 }
             }
         }
         for (std::size_t i = inner; i < section_.size(); ++i) {
-            // what would push liquid through the wall is met by the pressure there
-            const Vec3 n = section_.outward(i);
+            // The wall takes part in the divergence with all that acts on the liquid there, so that
+            // a uniform acceleration has none; the pressure then undoes it.
             const auto entries = laplacian_stencil_.of(i);
             for (std::size_t k = begin; k < end; k += lane_count) {
                 Vector<Lanes> a = body;
@@ -278,10 +278,10 @@ void Liquid::predict(const Stage& stage) {
                     a += viscous_acceleration(entries, axial_, nu_t_, u_, i,
                                               static_cast<std::ptrdiff_t>(k));
                 }
-                const Lanes through = share * stage.dt * (n.y * a.y + n.z * a.z);
+                const Lanes time = share * stage.dt + Lanes{};
                 store(star_.x[i] + k, load(u_.x[i] + k));
-                store(star_.y[i] + k, load(u_.y[i] + k) + n.y * through);
-                store(star_.z[i] + k, load(u_.z[i] + k) + n.z * through);
+                store(star_.y[i] + k, load(u_.y[i] + k) + time * a.y);
+                store(star_.z[i] + k, load(u_.z[i] + k) + time * a.z);
             }
         }
         std::fill(flux_.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -314,8 +314,8 @@ void Liquid::find_divergence(const VectorField& field, Field& result) {
 /// Pressure of u*: phi.
 void Liquid::project(const Stage& stage, AdvanceReport& report) {
     find_divergence(star_, phi_);
-    const bool at_wall = flow_ == Flow::laminar || source_.x.rows() > 0 ||
-                         body_force_.y != 0 || body_force_.z != 0;
+    const bool at_wall =
+        flow_ == Flow::laminar || source_.x.rows() > 0 || body_force_.y != 0 || body_force_.z != 0;
     if (at_wall) {
         for (std::size_t i = section_.interior_count(); i < section_.size(); ++i) {
             const Vec3 n = section_.outward(i);
@@ -364,8 +364,8 @@ Real Liquid::correct(Real kick) {
     });
     if (drive_.pressure_gradient) return 0;
     const Real flux = sum_of_chunks([&](std::size_t c) { return of_chunk_[c]; });
-    const Real rest = (drive_.bulk_velocity * bore_area_ - flux / static_cast<Real>(stations())) /
-                      interior_area_;
+    const Real rest =
+        (drive_.bulk_velocity * bore_area_ - flux / static_cast<Real>(stations())) / interior_area_;
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
         for (std::size_t i = 0; i < inner; ++i) {
@@ -399,8 +399,8 @@ Real Liquid::residual_divergence() {
     for (std::size_t i = 0; i < section_.interior_count(); ++i) {
         for (std::size_t k = 0; k < stations(); ++k) {
             square += strain_[i][k] * strain_[i][k];
-            fastest = std::max({fastest, std::abs(u_.x[i][k]), std::abs(u_.y[i][k]),
-                                std::abs(u_.z[i][k])});
+            fastest = std::max(
+                {fastest, std::abs(u_.x[i][k]), std::abs(u_.y[i][k]), std::abs(u_.z[i][k])});
         }
     }
     if (!(fastest > 0)) return 0;

@@ -88,13 +88,13 @@ public:
     [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }     // [m]
     [[nodiscard]] std::size_t size() const noexcept { return section_.size() * stations(); }
     [[nodiscard]] const VectorField& velocity() const noexcept { return u_; } // [m/s]
-    [[nodiscard]] std::vector<Real> pressure() const;     // [Pa] less its mean; [node][station]
+    [[nodiscard]] std::vector<Real> pressure() const;      // [Pa] less its mean; [node][station]
     [[nodiscard]] std::vector<Real> void_fraction() const; // [-] of the liquid: 1
-    [[nodiscard]] Real bulk_velocity() const;             // [m/s] mean over the bore
+    [[nodiscard]] Real bulk_velocity() const;              // [m/s] mean over the bore
     [[nodiscard]] Real pressure_gradient() const noexcept { return gradient_; } // [Pa/m] last step
-    [[nodiscard]] Real wall_shear() const;       // [Pa] mean of the wall law; 0 in laminar flow
-    [[nodiscard]] Real kinetic_energy() const;   // [J/kg] per mass
-    [[nodiscard]] Real pressure_noise() const;   // [Pa] scatter of p about its mean
+    [[nodiscard]] Real wall_shear() const;     // [Pa] mean of the wall law; 0 in laminar flow
+    [[nodiscard]] Real kinetic_energy() const; // [J/kg] per mass
+    [[nodiscard]] Real pressure_noise() const; // [Pa] scatter of p about its mean
     [[nodiscard]] Real largest_viscosity() const noexcept { return largest_viscosity_; } // [m2/s]
 
     /// Exact state; restoring it continues bit-equal.
@@ -143,16 +143,16 @@ private:
     Real bore_area_, interior_area_, layer_area_; // [m2]
     linear::CrossSectionSolver solver_;
 
-    VectorField u_, start_, star_; // [m/s]; star_ holds accelerations before `predict`
-    VectorField source_;           // [m/s2] of the nodes; empty where there is none
-    Gradients gradients_;         // only for MUSCL
-    Field strain_, nu_t_;          // [1/s2], [m2/s] all viscosity
-    Field phi_;                    // [m2/s]
-    Field friction_velocity_;      // [m/s] of the wall's nodes
-    std::vector<Real> drag_;      // [m3/s2] of the wall, by station
+    VectorField u_, start_, star_;           // [m/s]; star_ holds accelerations before `predict`
+    VectorField source_;                     // [m/s2] of the nodes; empty where there is none
+    Gradients gradients_;                    // only for MUSCL
+    Field strain_, nu_t_;                    // [1/s2], [m2/s] all viscosity
+    Field phi_;                              // [m2/s]
+    Field friction_velocity_;                // [m/s] of the wall's nodes
+    std::vector<Real> drag_;                 // [m3/s2] of the wall, by station
     std::vector<Real> flux_, viscous_force_; // by station
     std::vector<Real> of_chunk_;
-    Vec3 body_force_; // [m/s2]
+    Vec3 body_force_;         // [m/s2]
     Real pressure_scale_ = 0; // [kg/m3/s] p over phi
     Real gradient_ = 0, largest_viscosity_ = 0;
 };

@@ -39,7 +39,8 @@ public:
                     "Section: inner nodes must be half a spacing from the wall and more");
             if (wall_distance(i) < 1.5 * spacing) layer_.push_back(static_cast<Index>(i));
         }
-        require(layer_.size() >= 6, "Section: a layer of nodes one spacing from the wall is needed");
+        require(layer_.size() >= 6,
+                "Section: a layer of nodes one spacing from the wall is needed");
         for (const Index i : layer_) layer_distance_ += wall_distance(i);
         layer_distance_ /= static_cast<Real>(layer_.size());
         std::vector<Index> wall;
