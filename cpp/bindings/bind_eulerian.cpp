@@ -82,9 +82,43 @@ std::vector<std::remove_const_t<T>> copy(std::span<T> span) {
     return {span.begin(), span.end()};
 }
 
+py::dict section_operators(const Array<Real>& place, const Array<Real>& area,
+                           std::size_t wall_count, Real pipe_radius, Real spacing) {
+    const Section section = section_of(place, area, wall_count, pipe_radius, spacing);
+    const auto gradient = mps::eulerian::gradient_stencil(section);
+    const auto laplacian = mps::eulerian::laplacian_stencil(section);
+    const auto upwind = mps::eulerian::upwind_stencil(section);
+    const std::size_t n = section.size();
+    return py::dict("gradient_y"_a = plane(gradient.dense(n, 0), n),
+                    "gradient_z"_a = plane(gradient.dense(n, 1), n),
+                    "laplacian"_a = plane(laplacian.dense(n, 0), n),
+                    "damping_y"_a = plane(upwind.dense(n, 2), n),
+                    "damping_z"_a = plane(upwind.dense(n, 3), n));
+}
+
 } // namespace
 
 void bind_eulerian(py::module_ m) {
+    m.def("section_operators", &section_operators, py::kw_only(), "place"_a, "area"_a,
+          "wall_count"_a, "pipe_radius"_a, "spacing"_a,
+          R"(Least-squares operators across a pipe, as matrices.
+
+Parameters
+----------
+place, area, wall_count, pipe_radius, spacing
+    As of `EulerianLiquid`.
+
+Returns
+-------
+dict of (n, n) float64 ndarray
+    ``gradient_y``, ``gradient_z`` [1/m]; ``laplacian`` [1/m2]; ``damping_y``, ``damping_z`` of
+    upwind differences [1/m].
+
+References
+----------
+Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
+)");
+
     py::class_<AdvanceReport>(m, "NodeLiquidReport", "What a call of EulerianLiquid.advance met.")
         .def_readonly("substeps", &AdvanceReport::substeps)
         .def_property_readonly(

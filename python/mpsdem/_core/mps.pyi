@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'slip_divergence', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'section_operators', 'shear_rate', 'slip_divergence', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -813,6 +813,25 @@ def number_density(neighbors: mpsdem._core.neighbors.NeighborList, reference: Re
     References
     ----------
     Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def section_operators(*, place: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], area: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall_count: typing.SupportsInt | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, spacing: typing.SupportsFloat | typing.SupportsIndex) -> dict[str, typing.Any]:
+    """
+    Least-squares operators across a pipe, as matrices.
+    
+    Parameters
+    ----------
+    place, area, wall_count, pipe_radius, spacing
+        As of `EulerianLiquid`.
+    
+    Returns
+    -------
+    dict of (n, n) float64 ndarray
+        ``gradient_y``, ``gradient_z`` [1/m]; ``laplacian`` [1/m2]; ``damping_y``, ``damping_z`` of
+        upwind differences [1/m].
+    
+    References
+    ----------
+    Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
     """
 def shear_rate(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
     """

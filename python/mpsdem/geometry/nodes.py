@@ -83,7 +83,9 @@ def node_layout(*, radius: float, length: float, spacing: float) -> NodeLayout:
     rings = round(radius / spacing)
     if rings < _FEWEST_RINGS or spacing > length:
         widest = min(radius / _FEWEST_RINGS, length)
-        raise ValueError(f"spacing = {spacing}: must be at most {widest:g} m, a third of the radius")
+        raise ValueError(
+            f"spacing = {spacing}: must be at most {widest:g} m, a third of the radius"
+        )
     dx = radius / rings
     counts = [1, *(round(2 * np.pi * k) for k in range(1, rings + 1))]
     ring = np.repeat(np.arange(rings + 1), counts)
@@ -103,7 +105,7 @@ def node_layout(*, radius: float, length: float, spacing: float) -> NodeLayout:
 def _stations(wanted: float) -> int:
     """Multiple of four without prime factors above five that is nearest to a number."""
     most = 2 * math.ceil(wanted) + _FEWEST_STATIONS
-    smooth = [
+    smooth: list[int] = [
         _LANES * 2**i * 3**j * 5**k
         for i in range(most.bit_length())
         for j in range(most.bit_length())

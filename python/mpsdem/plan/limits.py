@@ -140,11 +140,11 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
 
 
 def liquid_limits(case: Case) -> Iterator[Limit]:
-    """Limits of the step of a particle liquid at its expected speed; none for other liquids.
+    """Limits of the step of a computed liquid at its expected speed; none for other liquids.
 
     Where it is faster than expected, it parts a step itself.
     """
-    if case.liquid is None or liquid_model(case) != "lagrangian":
+    if case.liquid is None or liquid_model(case) not in ("eulerian", "lagrangian"):
         return
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     profile = pipe_profile(case)

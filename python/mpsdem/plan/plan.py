@@ -38,8 +38,10 @@ _SERIAL = 5000  # solids up to which threads cost more than they gain
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
 _CALL_TIME = 1e-4  # [s] one turn of the time loop
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
-_PARTICLE_TIME = 3e-6  # [s] one step of one liquid particle, its pressure included
-_PARTICLE_BYTES = 1300  # memory of one liquid particle with its neighbors
+# [s] one step of one liquid particle or node, its pressure included, and its memory
+_PARTICLE_TIME = {"lagrangian": 3e-6, "eulerian": 0.4e-6}
+_PARTICLE_BYTES = {"lagrangian": 1300, "eulerian": 400}
+_LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
 _BASE_BYTES = 150_000_000  # memory of the program before any solid
 
 
@@ -84,7 +86,7 @@ class Plan:
         In the order of the time step.
     impact_speed : float
         Speed of the collisions that the contacts are judged by [m/s]; 0 without solids.
-    liquid_model : {"profile", "lagrangian"} or None
+    liquid_model : {"profile", "eulerian", "lagrangian"} or None
         How the liquid is computed; None without any.
     solid_step : Step or None
         Step of the solids; None without any.
@@ -244,19 +246,27 @@ def _needs_void_fraction(case: Case) -> bool:
 
 def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
     solids, liquid = case.solids, case.liquid
-    moving = liquid_model(case) == "lagrangian"
-    if moving:
+    model = liquid_model(case)
+    if liquid is not None and model in _LIQUID_KINDS:
         flow = (
             "laminar, no-slip walls"
             if pipe_profile(case).laminar
             else "mixing length and log-law wall function, as the flow is turbulent"
         )
-        reason = f"about {particle_count(case)} particles were asked for; {flow}"
+        if liquid.model == "auto":
+            asked = (
+                "must be computed, as its pressure gradient is given, and the pipe is straight, "
+                "full, rigid and periodic"
+            )
+        else:
+            asked = "were asked for"
+        reason = f"about {particle_count(case)} {_LIQUID_KINDS[model]} {asked}; {flow}"
         yield Planned(name="AdvanceLiquid", reason=reason)
     if solids is not None:
         if liquid is not None:
             flow = "parabola" if pipe_profile(case).laminar else "turbulent profile"
-            reason = "of the particles near a solid" if moving else f"it is a prescribed {flow}"
+            kind = _LIQUID_KINDS.get(model or "")
+            reason = f"of the {kind} near a solid" if kind else f"it is a prescribed {flow}"
             yield Planned(name="SampleLiquid", reason=f"the velocity of the liquid: {reason}")
             if _needs_void_fraction(case):
                 reason = f"the drag law {solids.drag} depends on the share of liquid at a solid"
@@ -292,14 +302,16 @@ def _left_out(case: Case) -> Iterator[Planned]:
 
 def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     count, steps = case.solids_count, clock.steps
-    particles = particle_count(case)
+    particles, model = particle_count(case), liquid_model(case) or ""
+    particle_time = particles * _PARTICLE_TIME.get(model, 0.0)
+    particle_bytes = particles * _PARTICLE_BYTES.get(model, 0)
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
         wall_seconds=(
             count * steps * (clock.substeps / SOLID_RATE / threads + _SAMPLE_TIME)
-            + steps * (_CALL_TIME + particles * _PARTICLE_TIME / turns / threads)
+            + steps * (_CALL_TIME + particle_time / turns / threads)
         ),
-        memory_bytes=_BASE_BYTES + count * _SOLID_BYTES + particles * _PARTICLE_BYTES,
+        memory_bytes=_BASE_BYTES + count * _SOLID_BYTES + particle_bytes,
         disk_bytes=frame_bytes * (clock.frames + 1),
     )
 
