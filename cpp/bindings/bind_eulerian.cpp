@@ -123,8 +123,7 @@ Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
         .def_readonly("substeps", &AdvanceReport::substeps)
         .def_property_readonly(
             "limit", [](const AdvanceReport& r) { return name_of(r.limit); },
-            "What bound the last substep: courant, viscosity, or none where it took all that was "
-            "left.")
+            "What bound the shortest step: courant, viscosity, or none where one step was enough.")
         .def_readonly("shortest", &AdvanceReport::shortest,
                       "Shortest step that the limits allowed in the call [s].")
         .def_readonly("mean_gradient", &AdvanceReport::mean_gradient,

@@ -132,7 +132,6 @@ AdvanceReport Liquid::advance(Real dt) {
         const Real count = std::ceil(left / allowed(report) - 1e-9);
         report.sound = count < most_substeps;
         if (!report.sound) break;
-        if (count <= 1) report.limit = Limit::none;
         const Real length = left / std::max(count, 1.);
         Real driven = 0, taken = 0; // [m/s] given and taken along the pipe over the substep
         for (std::size_t s = 0; s < weights.count; ++s) {
@@ -160,6 +159,7 @@ AdvanceReport Liquid::advance(Real dt) {
         report.mean_gradient += density_ * driven / dt;
         report.friction -= density_ * taken / dt;
     }
+    if (report.substeps == 1) report.limit = Limit::none;
     report.unexplained = density_ * (interior_velocity() - before) / dt - report.mean_gradient +
                          report.friction - density_ * body_force_.x;
     report.divergence = residual_divergence();
@@ -215,10 +215,13 @@ Real Liquid::allowed(AdvanceReport& report) const {
     }
     const Real courant = numerics_.courant / (largest(most) + sum(bad));
     const Real viscous = viscous_limit(numerics_.scheme) / (viscous_bound_ * largest_viscosity_);
-    report.limit = courant < viscous ? Limit::courant : Limit::viscosity;
-    const Real step = courant < viscous ? courant : viscous;
-    report.shortest = std::min(report.shortest, step);
-    return std::isnan(courant) ? courant : step;
+    if (std::isnan(courant)) return courant;
+    const Real step = std::min(courant, viscous);
+    if (step < report.shortest) {
+        report.shortest = step;
+        report.limit = courant < viscous ? Limit::courant : Limit::viscosity;
+    }
+    return step;
 }
 
 /// u* from the accelerations in star_, and its flux through each plane.

@@ -37,8 +37,8 @@ struct Numerics {
 /// What a call of Liquid::advance met, over its substeps.
 struct AdvanceReport {
     int substeps = 0;
-    Limit limit = Limit::none; // what bound the last substep; none: it took all that was left
-    Real shortest = 0;         // [s] allowed by that limit, the least of the call
+    Limit limit = Limit::none; // what bound the shortest step; none: one step took all
+    Real shortest = 0;         // [s] the least step allowed
     Real mean_gradient = 0;    // [Pa/m] loss of pressure along the pipe, mean over the call
     Real friction = 0;         // [Pa/m] that the walls take up, mean over the call; turbulent only
     Real unexplained = 0;      // [Pa/m] of the axial momentum; turbulent only

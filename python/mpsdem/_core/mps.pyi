@@ -429,7 +429,7 @@ class NodeLiquidReport:
     @property
     def limit(self) -> str:
         """
-        What bound the last substep: courant, viscosity, or none where it took all that was left.
+        What bound the shortest step: courant, viscosity, or none where one step was enough.
         """
     @property
     def mean_gradient(self) -> float:
