@@ -255,8 +255,8 @@ def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
         )
         if liquid.model == "auto":
             asked = (
-                "must be computed, as its pressure gradient is given, and the pipe is straight, "
-                "full, rigid and periodic"
+                "as the liquid must be computed (its pressure gradient is given), and the pipe is "
+                "straight, full, rigid and periodic"
             )
         else:
             asked = "were asked for"

@@ -47,7 +47,7 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
     values |= _of_liquid(plan, state, results) | _of_solids(plan, state, results)
     values["warnings"] = [*plan.warnings, *_warnings(values)]
     reasons = {"exchange_error": "the liquid takes no impulse from the solids"}
-    if plan.liquid_model == "profile":
+    if plan.liquid_model not in ("eulerian", "lagrangian"):
         reasons |= dict.fromkeys(("liquid_count", "mass_error"), "the liquid has no particles")
     if plan.case.liquid is None:
         reasons |= dict.fromkeys((*reasons, "liquid_model", *_LIQUID_KEYS), "no liquid")
