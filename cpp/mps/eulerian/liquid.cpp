@@ -202,20 +202,27 @@ void Liquid::transport() {
 }
 
 /// Longest step that is stable now [s]; not a number where a speed is none.
-Real Liquid::allowed(AdvanceReport& report) const {
-    Lanes most{}, bad{};
-    for (std::size_t i = 0; i < section_.size(); ++i) {
-        for (std::size_t k = 0; k < stations(); k += lane_count) {
-            const Lanes y = load(u_.y[i] + k), z = load(u_.z[i] + k);
-            const Lanes rate = (1 / axial_.spacing) * abs(load(u_.x[i] + k)) +
-                               (1 / section_.spacing()) * sqrt(y * y + z * z);
-            most = max(most, rate);
-            bad += rate - rate; // 0, or not a number
+Real Liquid::allowed(AdvanceReport& report) {
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        Lanes most{}, bad{};
+        for (std::size_t i = 0; i < section_.size(); ++i) {
+            for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); k += lane_count) {
+                const Lanes y = load(u_.y[i] + k), z = load(u_.z[i] + k);
+                const Lanes rate = (1 / axial_.spacing) * abs(load(u_.x[i] + k)) +
+                                   (1 / section_.spacing()) * sqrt(y * y + z * z);
+                most = max(most, rate);
+                bad += rate - rate; // 0, or not a number
+            }
         }
+        of_chunk_[c] = largest(most) + sum(bad);
+    });
+    Real most = 0;
+    for (const Real rate : of_chunk_) {
+        if (std::isnan(rate)) return rate;
+        most = std::max(most, rate);
     }
-    const Real courant = numerics_.courant / (largest(most) + sum(bad));
+    const Real courant = numerics_.courant / most;
     const Real viscous = viscous_limit(numerics_.scheme) / (viscous_bound_ * largest_viscosity_);
-    if (std::isnan(courant)) return courant;
     const Real step = std::min(courant, viscous);
     if (step < report.shortest) {
         report.shortest = step;
@@ -398,17 +405,25 @@ Real Liquid::mean_drag() const {
 
 Real Liquid::residual_divergence() {
     find_divergence(u_, strain_);
-    Real square = 0, fastest = 0;
-    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
-        for (std::size_t k = 0; k < stations(); ++k) {
-            square += strain_[i][k] * strain_[i][k];
-            fastest = std::max(
-                {fastest, std::abs(u_.x[i][k]), std::abs(u_.y[i][k]), std::abs(u_.z[i][k])});
+    std::vector<Real> fastest(chunks_.count());
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        Lanes square{}, most{};
+        for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+            for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); k += lane_count) {
+                const Lanes divergence = load(strain_[i] + k);
+                square += divergence * divergence;
+                most = max(most, max(abs(load(u_.x[i] + k)),
+                                     max(abs(load(u_.y[i] + k)), abs(load(u_.z[i] + k)))));
+            }
         }
-    }
-    if (!(fastest > 0)) return 0;
+        of_chunk_[c] = sum(square);
+        fastest[c] = largest(most);
+    });
+    const Real speed = *std::ranges::max_element(fastest);
+    if (!(speed > 0)) return 0;
+    const Real square = sum_of_chunks([&](std::size_t c) { return of_chunk_[c]; });
     const auto count = static_cast<Real>(section_.interior_count() * stations());
-    return std::sqrt(square / count) * section_.spacing() / fastest;
+    return std::sqrt(square / count) * section_.spacing() / speed;
 }
 
 std::vector<Real> Liquid::pressure() const {

@@ -113,7 +113,7 @@ private:
     };
 
     void transport();
-    [[nodiscard]] Real allowed(AdvanceReport& report) const;
+    [[nodiscard]] Real allowed(AdvanceReport& report);
     void predict(const Stage& stage);
     void project(const Stage& stage, AdvanceReport& report);
     [[nodiscard]] Real correct(Real kick);

@@ -45,7 +45,8 @@ public:
                 };
                 const Vec3 near = tangential(Vec3{at(u.x), at(u.y), at(u.z)}, normal);
                 const Real speed = norm(near);
-                const Real shear = function_.shear(speed, distance_); // [m2/s2]
+                const Real shear =
+                    function_.shear(speed, distance_, out.friction_velocity[w][k]); // [m2/s2]
                 const Real u_star = std::sqrt(shear);
                 const Real over_speed = speed > 0 ? 1 / speed : 0;
                 const Real mean = viscosity_ + karman / 2 * u_star * distance_;
