@@ -28,9 +28,9 @@ struct AxialFourier::Plans {
 AxialFourier::AxialFourier(std::size_t rows, std::size_t stations)
     : stations_(stations), columns_((stations + 2 + lane_count - 1) / lane_count * lane_count),
       plans_(std::make_unique<Plans>()) {
-    const Transform plain(
-        Transform::impl_type(),
-        static_cast<Transform::Flag>(Transform::HalfSpectrum | Transform::Unscaled));
+    Transform plain;
+    plain.SetFlag(Transform::HalfSpectrum);
+    plain.SetFlag(Transform::Unscaled);
     plans_->of_group.assign(std::min(rows, most_groups), plain);
 }
 

@@ -74,14 +74,14 @@ CrossSectionSolver::CrossSectionSolver(std::span<const Real> interior, std::span
     const bool decomposed = eigen.info() == Eigen::Success;
     if (!decomposed) throw std::runtime_error("CrossSectionSolver: no eigenbasis was found");
 
-    const Eigen::VectorXcd values = eigen.eigenvalues();
+    const Eigen::VectorXcd& values = eigen.eigenvalues();
     const Real largest = values.cwiseAbs().maxCoeff();
     const Real highest = values.real().maxCoeff();
     if (!(highest < free_limit * largest)) {
         throw std::runtime_error("CrossSectionSolver: the operator has a growing mode, " +
                                  std::to_string(highest) + " 1/m2");
     }
-    const Eigen::MatrixXd vectors = eigen.pseudoEigenvectors();
+    const Eigen::MatrixXd& vectors = eigen.pseudoEigenvectors();
     const Real share = 1 / static_cast<Real>(stations); // the transforms are not scaled
     basis.smallest = free_limit * largest;
     basis.to_modes = share * vectors.inverse();

@@ -17,7 +17,7 @@ constexpr Real laplacian_reach = 1.6; // [-]
 constexpr Real upwind_reach = 2.6;    // [-]
 constexpr Real upwind_bias = 0.8;     // [-] how much more what lies upwind counts
 constexpr Real growth = 1.12;         // [-] of r_e where the fit is poor
-constexpr Real largest_reach = 8;     // [-] r_e over the spacing
+constexpr int most_growths = 15;      // to five times its size
 // [-] of the smallest over the largest eigenvalue of a fit, in units of r_e. On rings 3e-3 and
 // more; below it a fit has large weights of both signs.
 constexpr Real poorest_fit = 1e-3;
@@ -70,7 +70,7 @@ std::optional<Eigen::Matrix<Real, 5, Eigen::Dynamic>> fit(std::span<const Neighb
 /// Call use(radius, neighbors) with growing radii until it succeeds.
 template <class Use>
 void grow(const Section& section, std::size_t i, Real reach, const Use& use) {
-    for (; reach < largest_reach; reach *= growth) {
+    for (int growths = 0; growths <= most_growths; ++growths, reach *= growth) {
         const Real radius = reach * section.spacing();
         if (use(radius, neighbors_of(section, i, radius))) return;
     }
@@ -115,6 +115,7 @@ Stencil<count> stencil(const std::vector<Row<count>>& rows) {
 
 Stencil<2> gradient_stencil(const Section& section) {
     std::vector<Row<2>> rows;
+    rows.reserve(section.size());
     for (std::size_t i = 0; i < section.size(); ++i) rows.push_back(gradient_row(section, i));
     return stencil(rows);
 }

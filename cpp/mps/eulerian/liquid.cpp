@@ -211,7 +211,7 @@ Real Liquid::allowed(AdvanceReport& report) {
                 const Lanes rate = (1 / axial_.spacing) * abs(load(u_.x[i] + k)) +
                                    (1 / section_.spacing()) * sqrt(y * y + z * z);
                 most = max(most, rate);
-                bad += rate - rate; // 0, or not a number
+                bad += 0 * rate; // not a number where the rate is none, or infinite
             }
         }
         of_chunk_[c] = largest(most) + sum(bad);
