@@ -158,6 +158,73 @@ def test_the_pressure_of_a_swirl_bears_its_centrifugal_force():
     assert np.ptp(error) < 0.04 * np.ptp(exact)
 
 
+def torsion(nodes, *, wave, shift=0.0):
+    """Turn about the axis as J1(a s) cos(wave (x - shift)); no pressure and no flux go with it."""
+    x, y, z = np.moveaxis(nodes.position, -1, 0)
+    zero = jn_zeros(1, 1)[0]
+    s = np.hypot(y, z) / RADIUS
+    rate = jv(1, zero * s) / np.maximum(s * RADIUS, 1e-12) * np.cos(wave * (x - shift))
+    return np.stack([0 * y, -rate * z, rate * y], axis=-1)
+
+
+def start_from(liquid, velocity):
+    liquid.restore(liquid.state() | {"velocity": velocity.reshape(-1, 3)})
+
+
+SMALL = 1e-6  # of the bulk velocity: a wave that does nothing to itself
+
+
+def test_a_torsional_wave_decays_by_its_shear_along_the_pipe_too():
+    """At the rate nu (a^2 / R^2 + k^2), for a wave of one diameter along the pipe."""
+    viscosity, length = 0.02, 0.2
+    wave, zero = 2 * np.pi / length, jn_zeros(1, 1)[0]
+    liquid, nodes = pipe(
+        across=16, length=length, reynolds=10, velocity=still, pressure_gradient=0.0
+    )
+    first = SMALL * torsion(nodes, wave=wave)
+    start_from(liquid, first)
+    time = 1 / (viscosity * ((zero / RADIUS) ** 2 + wave**2))
+    run(liquid, time=time, step=time)
+    assert liquid.velocity == pytest.approx(first * np.exp(-1), abs=0.02 * SMALL)
+
+
+@pytest.mark.parametrize("convection", ["upwind", "muscl"])
+def test_a_torsional_wave_is_carried_along_by_the_flow(convection):
+    """Each ring of it at its own velocity, through a fifth of its length on the axis."""
+    length, time = 0.4, 0.04
+    wave = 2 * np.pi / length
+    liquid, nodes = pipe(
+        across=16, length=length, reynolds=2000, velocity=parabola, convection=convection
+    )
+    s = np.hypot(*np.moveaxis(nodes.position[..., 1:], -1, 0)) / RADIUS
+    along = parabola(s)[..., None] * [1.0, 0.0, 0.0]
+    start_from(liquid, along + SMALL * torsion(nodes, wave=wave))
+    run(liquid, time=time, step=time)
+    turning = (liquid.velocity - along) / SMALL
+    exact = torsion(nodes, wave=wave, shift=parabola(s) * time)
+    assert np.linalg.norm(turning - exact) < 0.04 * np.linalg.norm(exact)
+
+
+def test_a_force_that_is_a_gradient_makes_pressure_and_no_flow():
+    """Of psi = cos(k x) (1 - s^2)^2 and of y^2 - z^2: flat at the wall, and not."""
+    length = 0.4
+    wave = 2 * np.pi / length
+    liquid, nodes = pipe(
+        across=24, length=length, reynolds=50, velocity=still, pressure_gradient=0.0
+    )
+    x, y, z = np.moveaxis(nodes.position, -1, 0)
+    well = 1 - (y**2 + z**2) / RADIUS**2
+    slope = -4 * well / RADIUS**2 * np.cos(wave * x)
+    force = np.stack(
+        [-wave * well**2 * np.sin(wave * x), slope * y + 200 * y, slope * z - 200 * z], axis=-1
+    )
+    liquid.momentum_source(force)
+    run(liquid, time=1e-3, step=1e-3)
+    psi = well**2 * np.cos(wave * x) + 100 * (y**2 - z**2)
+    assert liquid.pressure == pytest.approx(DENSITY * (psi - psi.mean()), abs=0.02 * DENSITY)
+    assert np.abs(liquid.velocity).max() < 0.03 * np.abs(force).max() * 1e-3
+
+
 def test_a_flow_starts_up_as_theory_says():
     """Under a sudden gradient, series of Bessel functions; at t nu / R^2 = 0.1 and 0.5."""
     reynolds = 10
