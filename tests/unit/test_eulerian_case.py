@@ -57,6 +57,14 @@ def test_a_spacing_without_room_for_rings_is_refused():
         case(WATER | {"model": "eulerian"}, fidelity={"particle_spacing": 0.05})
 
 
+@pytest.mark.parametrize(("level", "warned"), [("quick", False), ("fine", True)])
+def test_nodes_too_near_to_the_wall_for_its_law_are_warned_of(level, warned):
+    """At Re 5000 the first ring lies at 35 wall units with 10 spacings across, at 15 with 24."""
+    slow = WATER | {"bulk_velocity": 0.025, "model": "eulerian"}
+    warnings = make_plan(case(slow, fidelity={"level": level})).warnings
+    assert any("buffer layer" in warning for warning in warnings) == warned
+
+
 @pytest.fixture(scope="module")
 def laminar(tmp_path_factory):
     path = tmp_path_factory.mktemp("nodes") / "run"

@@ -367,6 +367,36 @@ def test_a_long_pipe_is_as_quiet_as_a_short_one():
     assert liquid.pressure_noise < 0.001 * DENSITY
 
 
+def test_a_flow_the_other_way_is_the_same_the_other_way():
+    there, _ = pipe(across=10, length=0.2, reynolds=2e5, velocity=power_law)
+    back, _ = pipe(
+        across=10,
+        length=0.2,
+        reynolds=2e5,
+        velocity=lambda s: -power_law(s),
+        bulk_velocity=-1.0,
+    )
+    for liquid in (there, back):
+        run(liquid, time=0.5, step=0.1)
+    assert back.pressure_gradient == pytest.approx(-there.pressure_gradient, rel=1e-9)
+    assert back.velocity[..., 0] == pytest.approx(-there.velocity[..., 0], abs=1e-12)
+
+
+def test_a_liquid_at_rest_stays_at_rest():
+    for turbulent in (False, True):
+        liquid, _ = pipe(
+            across=10,
+            length=0.2,
+            reynolds=2e5,
+            velocity=still,
+            bulk_velocity=0.0,
+            turbulent=turbulent,
+        )
+        liquid.body_force([0.0, 0.0, -9.81])
+        run(liquid, time=0.5, step=0.25)
+        assert np.abs(liquid.velocity).max() < 1e-12
+
+
 def test_the_bulk_velocity_is_held_and_every_section_carries_it():
     liquid, nodes = pipe(across=8, length=0.4, reynolds=2e5, velocity=power_law, swirl=0.1)
     for _ in range(10):
