@@ -42,7 +42,7 @@ _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 _PARTICLE_TIME = {"lagrangian": 3e-6, "eulerian": 0.4e-6}
 _PARTICLE_BYTES = {"lagrangian": 1300, "eulerian": 400}
 _LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
-# Wall units from the wall below which the nodes' friction is over 4 % high: 4.3 % at 15, 3.6 % at 26.
+# Wall units from the wall below which the nodes' friction is 4 % high: 4.3 % at 15, 3.6 % at 26.
 _LEAST_PLUS = 20
 _BASE_BYTES = 150_000_000  # memory of the program before any solid
 
