@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 namespace mpsdem::mps::eulerian {
@@ -31,6 +32,15 @@ Weights weights_of(Scheme scheme) {
 
 Real viscous_limit(Scheme scheme) {
     return viscous_share * (scheme == Scheme::rk2 ? 2.0 : 2.51);
+}
+
+/// In order, so that it does not depend on threads.
+Real total(std::span<const Real> values) {
+    return std::accumulate(values.begin(), values.end(), Real{0});
+}
+
+Real mean(std::span<const Real> values) {
+    return total(values) / static_cast<Real>(values.size());
 }
 
 linear::CrossSectionSolver solver_of(const Section& section, const Stencil<2>& gradient,
@@ -142,13 +152,8 @@ AdvanceReport Liquid::advance(Real dt) {
             if (s == 0) std::swap(u_, start_);
             taken = share * (taken + length * mean_drag() / interior_area_);
             const Real given = share * length / density_ * drive_.pressure_gradient.value_or(0);
-            const Real held = (drive_.bulk_velocity - sum_of_chunks([&](std::size_t c) {
-                                   Real sum = 0;
-                                   for (std::size_t k = chunks_.begin(c); k < chunks_.end(c); ++k)
-                                       sum += flux_[k];
-                                   return sum / (bore_area_ * static_cast<Real>(stations()));
-                               })) *
-                              bore_area_ / interior_area_;
+            const Real held =
+                (drive_.bulk_velocity - mean(flux_) / bore_area_) * bore_area_ / interior_area_;
             const Real kick = drive_.pressure_gradient ? given : held;
             project(stage, report);
             driven = share * driven + kick + correct(kick);
@@ -161,16 +166,9 @@ AdvanceReport Liquid::advance(Real dt) {
     }
     if (report.substeps == 1) report.limit = Limit::none;
     report.unexplained = density_ * (interior_velocity() - before) / dt - report.mean_gradient +
-                         report.friction - density_ * body_force_.x;
+                         report.friction - density_ * (body_force_.x + source_velocity_rate());
     report.divergence = residual_divergence();
     return report;
-}
-
-template <class Value>
-Real Liquid::sum_of_chunks(const Value& value) const {
-    Real sum = 0;
-    for (std::size_t c = 0; c < chunks_.count(); ++c) sum += value(c);
-    return sum;
 }
 
 /// -(u . grad) u into star_, and the viscosity.
@@ -327,11 +325,12 @@ void Liquid::project(const Stage& stage, AdvanceReport& report) {
     const bool at_wall =
         flow_ == Flow::laminar || source_.x.rows() > 0 || body_force_.y != 0 || body_force_.z != 0;
     if (at_wall) {
-        for (std::size_t i = section_.interior_count(); i < section_.size(); ++i) {
+        parallel_for(section_.wall_count(), numerics_.threads, [&](std::size_t w) {
+            const std::size_t i = section_.interior_count() + w;
             const Vec3 n = section_.outward(i);
             for (std::size_t k = 0; k < stations(); k += lane_count)
                 store(phi_[i] + k, n.y * load(star_.y[i] + k) + n.z * load(star_.z[i] + k));
-        }
+        });
     }
     using Source = linear::CrossSectionSolver::WallSource;
     const auto start = std::chrono::steady_clock::now();
@@ -373,9 +372,9 @@ Real Liquid::correct(Real kick) {
         of_chunk_[c] = sum(flux);
     });
     if (drive_.pressure_gradient) return 0;
-    const Real flux = sum_of_chunks([&](std::size_t c) { return of_chunk_[c]; });
+    const Real flow = total(of_chunk_);
     const Real rest =
-        (drive_.bulk_velocity * bore_area_ - flux / static_cast<Real>(stations())) / interior_area_;
+        (drive_.bulk_velocity * bore_area_ - flow / static_cast<Real>(stations())) / interior_area_;
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
         for (std::size_t i = 0; i < inner; ++i) {
@@ -396,11 +395,8 @@ void Liquid::meet_wall(std::size_t begin, std::size_t end) {
 /// Force of the walls on the inner nodes over density and length, mean over the stations [m3/s2]:
 /// in turbulent flow that of the wall law, in laminar flow what the viscous terms come to.
 Real Liquid::mean_drag() const {
-    const bool turbulent = flow_ == Flow::turbulent;
-    Real total = 0;
-    for (const Real force : turbulent ? drag_ : viscous_force_) total += force;
-    const Real share = turbulent ? interior_area_ / bore_area_ : 1;
-    return share * total / static_cast<Real>(stations());
+    if (flow_ == Flow::laminar) return mean(viscous_force_);
+    return interior_area_ / bore_area_ * mean(drag_);
 }
 
 Real Liquid::residual_divergence() {
@@ -421,9 +417,8 @@ Real Liquid::residual_divergence() {
     });
     const Real speed = *std::ranges::max_element(fastest);
     if (!(speed > 0)) return 0;
-    const Real square = sum_of_chunks([&](std::size_t c) { return of_chunk_[c]; });
     const auto count = static_cast<Real>(section_.interior_count() * stations());
-    return std::sqrt(square / count) * section_.spacing() / speed;
+    return std::sqrt(total(of_chunk_) / count) * section_.spacing() / speed;
 }
 
 std::vector<Real> Liquid::pressure() const {
@@ -440,35 +435,31 @@ std::vector<Real> Liquid::pressure() const {
     return out;
 }
 
-std::vector<Real> Liquid::void_fraction() const {
-    return std::vector<Real>(size(), 1);
+/// Volume flow of the first nodes over the stations' number [m3/s].
+Real Liquid::flux(const Field& velocity, std::size_t nodes) const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < nodes; ++i)
+        sum += section_.area(i) * mean({velocity[i], stations()});
+    return sum;
 }
 
 Real Liquid::bulk_velocity() const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < section_.size(); ++i) {
-        Real row = 0;
-        for (std::size_t k = 0; k < stations(); ++k) row += u_.x[i][k];
-        sum += section_.area(i) * row;
-    }
-    return sum / (bore_area_ * static_cast<Real>(stations()));
+    return flux(u_.x, section_.size()) / bore_area_;
 }
 
 Real Liquid::interior_velocity() const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
-        Real row = 0;
-        for (std::size_t k = 0; k < stations(); ++k) row += u_.x[i][k];
-        sum += section_.area(i) * row;
-    }
-    return sum / (interior_area_ * static_cast<Real>(stations()));
+    return flux(u_.x, section_.interior_count()) / interior_area_;
+}
+
+/// What the source adds to the velocity of the inner nodes along the pipe [m/s2].
+Real Liquid::source_velocity_rate() const {
+    if (source_.x.rows() == 0) return 0;
+    return flux(source_.x, section_.interior_count()) / interior_area_;
 }
 
 Real Liquid::wall_shear() const {
-    Real total = 0;
-    for (const Real force : drag_) total -= force;
     const Real perimeter = section_.wall_share() * static_cast<Real>(section_.wall_count());
-    return density_ * total / (perimeter * static_cast<Real>(stations()));
+    return -density_ * mean(drag_) / perimeter;
 }
 
 Real Liquid::kinetic_energy() const {

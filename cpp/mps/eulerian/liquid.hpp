@@ -88,9 +88,8 @@ public:
     [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }     // [m]
     [[nodiscard]] std::size_t size() const noexcept { return section_.size() * stations(); }
     [[nodiscard]] const VectorField& velocity() const noexcept { return u_; } // [m/s]
-    [[nodiscard]] std::vector<Real> pressure() const;      // [Pa] less its mean; [node][station]
-    [[nodiscard]] std::vector<Real> void_fraction() const; // [-] of the liquid: 1
-    [[nodiscard]] Real bulk_velocity() const;              // [m/s] mean over the bore
+    [[nodiscard]] std::vector<Real> pressure() const; // [Pa] less its mean; [node][station]
+    [[nodiscard]] Real bulk_velocity() const;         // [m/s] mean over the bore
     [[nodiscard]] Real pressure_gradient() const noexcept { return gradient_; } // [Pa/m] last step
     [[nodiscard]] Real wall_shear() const;     // [Pa] mean of the wall law; 0 in laminar flow
     [[nodiscard]] Real kinetic_energy() const; // [J/kg] per mass
@@ -122,8 +121,8 @@ private:
     [[nodiscard]] Real residual_divergence();
     [[nodiscard]] Real mean_drag() const;
     [[nodiscard]] Real interior_velocity() const;
-    template <class Value>
-    [[nodiscard]] Real sum_of_chunks(const Value& value) const;
+    [[nodiscard]] Real flux(const Field& velocity, std::size_t nodes) const;
+    [[nodiscard]] Real source_velocity_rate() const;
 
     Section section_;
     Real pipe_length_; // [m]
