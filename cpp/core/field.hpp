@@ -4,6 +4,9 @@
 #include "core/lanes.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
+#include <type_traits>
 
 namespace mpsdem {
 
@@ -58,6 +61,14 @@ struct VectorField {
     VectorField(std::size_t rows, std::size_t stations)
         : x(rows, stations), y(rows, stations), z(rows, stations) {}
 };
+
+/// Sum and mean in order, so that they do not depend on threads.
+[[nodiscard]] inline Real total(std::span<const Real> values) noexcept {
+    return std::accumulate(values.begin(), values.end(), Real{0});
+}
+[[nodiscard]] inline Real mean(std::span<const Real> values) noexcept {
+    return total(values) / static_cast<Real>(values.size());
+}
 
 /// Cuts the stations into an even number of chunks of whole registers, about 32 stations each: what
 /// a sweep reads of one chunk stays in the cache. They do not depend on the number of threads.

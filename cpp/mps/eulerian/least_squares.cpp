@@ -1,5 +1,6 @@
 #include "mps/eulerian/least_squares.hpp"
 
+#include "core/check.hpp"
 #include "mps/weight.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "linear/cross_section_solver.hpp"
-#include "mps/eulerian/convection.hpp"
+#include "mps/eulerian/carry_muscl.hpp"
+#include "mps/eulerian/carry_upwind.hpp"
 #include "mps/eulerian/section.hpp"
 #include "mps/eulerian/stencil.hpp"
 #include "mps/eulerian/wall_law.hpp"

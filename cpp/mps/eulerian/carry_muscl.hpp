@@ -1,77 +1,11 @@
 #pragma once
 
-#include "mps/eulerian/axial.hpp"
+#include "mps/eulerian/carried.hpp"
 #include "mps/eulerian/section.hpp"
 #include "mps/eulerian/stencil.hpp"
 #include "mps/eulerian/strain.hpp"
 
-/// What the liquid carries with it, -(u . grad) u, at the inner nodes of one chunk of stations; and
-/// on the way |S|, as the gradients are there.
 namespace mpsdem::mps::eulerian {
-
-/// Where a sweep writes: the acceleration [m/s2] and |S|^2 [1/s2].
-struct Carried {
-    VectorField& acceleration;
-    Field& strain;
-};
-
-/// How much of the speed along the pipe counts for the damping across it, besides the speed across
-/// [-]. A straight flow has no speed across, so nothing else damps what the scattered nodes'
-/// pressure feeds: without it laminar flow is unstable from a cell Reynolds number U dx / nu of 50.
-/// The damping vanishes for quadratics, so for Poiseuille flow, but not for a log law: there it
-/// costs a seventh of the friction factor, and eddy viscosity needs no help.
-struct CrossDamping {
-    Real share;
-};
-inline constexpr CrossDamping laminar_damping{0.2};
-inline constexpr CrossDamping turbulent_damping{0};
-
-/// Along the pipe: fourth-order differences, damped by |u| dx^3 / 12 d^4/dx^4 as third-order upwind
-/// differences are.
-[[nodiscard]] [[gnu::always_inline]] inline Lanes
-carried_along(const Axial& axial, Lanes speed, const Real* f, Lanes& slope) noexcept {
-    slope = axial.first(f);
-    return speed * slope + abs(speed) * axial.damping(f);
-}
-
-/// Least-squares upwind: across the pipe u . C f + (|u_y| + s) E_y f + (|u_z| + s) E_z f with the
-/// weights of `upwind_stencil`, s the damping's share of |u_x|. Third order in the damping, second
-/// in the rest.
-inline void carry_upwind(const Section& section, const Stencil<4>& stencil, const Axial& axial,
-                         CrossDamping damping, const VectorField& u, std::size_t begin,
-                         std::size_t end, Carried out) {
-    for (std::size_t i = 0; i < section.interior_count(); ++i) {
-        const auto entries = stencil.of(i);
-        by_registers(begin, end, [&](std::size_t k, auto registers) {
-            constexpr std::size_t n = decltype(registers)::value;
-            Vector<Lanes> gradient[3][n];
-            const Field* const component[3] = {&u.x, &u.y, &u.z};
-            Field* const result[3] = {&out.acceleration.x, &out.acceleration.y,
-                                      &out.acceleration.z};
-            for (std::size_t a = 0; a < 3; ++a) {
-                const Field& f = *component[a];
-                const auto sums = apply<n, 4>(entries, f, k);
-                for (std::size_t v = 0; v < n; ++v) {
-                    const std::size_t at = k + v * lane_count;
-                    const Lanes ux = load(u.x[i] + at);
-                    const Lanes uy = load(u.y[i] + at), uz = load(u.z[i] + at);
-                    const Lanes least = damping.share * abs(ux);
-                    Lanes slope;
-                    const Lanes along = carried_along(axial, ux, f[i] + at, slope);
-                    const Lanes across = uy * sums.of[0][v] + uz * sums.of[1][v] +
-                                         (abs(uy) + least) * sums.of[2][v] +
-                                         (abs(uz) + least) * sums.of[3][v];
-                    store((*result[a])[i] + at, -(along + across));
-                    gradient[a][v] = {slope, sums.of[0][v], sums.of[1][v]};
-                }
-            }
-            for (std::size_t v = 0; v < n; ++v) {
-                store(out.strain[i] + k + v * lane_count,
-                      squared_strain(gradient[0][v], gradient[1][v], gradient[2][v]));
-            }
-        });
-    }
-}
 
 /// Gradient across the pipe of a field at every node, wall included: y and z parts [1/m of f].
 inline void gradient_across(const Stencil<2>& stencil, const Field& f, std::size_t begin,
