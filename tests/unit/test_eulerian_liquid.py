@@ -507,6 +507,9 @@ def test_speeds_that_run_away_are_told_not_followed():
     assert not liquid.advance(0.01).sound
     liquid, _ = pipe(across=8, length=0.4, reynolds=2e5, velocity=lambda s: np.nan * s)
     assert not liquid.advance(0.01).sound
+    liquid, _ = pipe(across=8, length=0.4, reynolds=2e5, velocity=power_law)
+    liquid.body_force([0.0, np.inf, 0.0])
+    assert not liquid.advance(0.001).sound
 
 
 @pytest.mark.parametrize(

@@ -140,6 +140,7 @@ AdvanceReport Liquid::advance(Real dt) {
     report.unexplained = density_ * (interior_velocity() - before) / dt - report.mean_gradient +
                          report.friction - density_ * (body_force_.x + source_velocity_rate());
     report.divergence = residual_divergence();
+    report.sound = report.sound && std::isfinite(report.divergence);
     return report;
 }
 
@@ -388,7 +389,7 @@ Real Liquid::residual_divergence() {
         fastest[c] = largest(most);
     });
     const Real speed = *std::ranges::max_element(fastest);
-    if (!(speed > 0)) return 0;
+    if (speed == 0) return 0;
     const auto count = static_cast<Real>(section_.interior_count() * stations());
     return std::sqrt(total(of_chunk_) / count) * section_.spacing() / speed;
 }
