@@ -274,6 +274,9 @@ Returns
         .def_property_readonly(
             "pressure", [](const Liquid& l) { return plane(l.pressure(), l.stations()); },
             "(n, stations) less the mean gradient and static parts [Pa].")
+        .def_property_readonly(
+            "viscosity", [](const Liquid& l) { return plane(l.viscosity(), l.stations()); },
+            "(n, stations) molecular and eddy viscosity of the last stage [m2/s].")
         .def_property_readonly("bulk_velocity", &Liquid::bulk_velocity, "Mean over the bore [m/s].")
         .def_property_readonly("pressure_gradient", &Liquid::pressure_gradient,
                                "Loss along the pipe in the last substep [Pa/m].")

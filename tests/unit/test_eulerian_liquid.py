@@ -287,6 +287,19 @@ def test_the_turbulent_profile_follows_the_log_law():
     assert liquid.velocity[layer, 0, 0] / u_star == pytest.approx(law, rel=0.02)
 
 
+def test_eddies_feel_shear_and_no_rotation():
+    """nu_t = l^2 |S| of a shear of 3 and 4 1/s in two planes, with a rotation on top of it."""
+    liquid, nodes = pipe(across=24, length=0.2, reynolds=2e5, velocity=power_law)
+    _, y, z = np.moveaxis(nodes.position, -1, 0)
+    s = np.hypot(y, z) / RADIUS
+    start_from(liquid, np.stack([1 + 3 * y + 4 * z, -7 * z, 7 * y], axis=-1))
+    run(liquid, time=1e-7, step=1e-7)
+    core = s[:, 0] < 0.7  # what the wall's slip does not reach
+    length = RADIUS * (0.14 - 0.08 * s**2 - 0.06 * s**4)
+    assert liquid.viscosity[core] == pytest.approx((1e-6 + 5 * length**2)[core], rel=1e-4)
+    assert liquid.largest_viscosity >= liquid.viscosity.max() * (1 - 1e-12)
+
+
 @pytest.mark.parametrize(("reynolds", "start"), [(2e5, power_law), (50, parabola)])
 def test_shaking_a_full_pipe_moves_nothing(reynolds, start):
     """20 m/s^2 across the pipe at 5 Hz, with a disturbance in the liquid."""

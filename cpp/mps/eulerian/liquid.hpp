@@ -89,8 +89,9 @@ public:
     [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }     // [m]
     [[nodiscard]] std::size_t size() const noexcept { return section_.size() * stations(); }
     [[nodiscard]] const VectorField& velocity() const noexcept { return u_; } // [m/s]
-    [[nodiscard]] std::vector<Real> pressure() const; // [Pa] less its mean; [node][station]
-    [[nodiscard]] Real bulk_velocity() const;         // [m/s] mean over the bore
+    [[nodiscard]] std::vector<Real> pressure() const;  // [Pa] less its mean; [node][station]
+    [[nodiscard]] std::vector<Real> viscosity() const; // [m2/s] eddies' too, of the last stage
+    [[nodiscard]] Real bulk_velocity() const;          // [m/s] mean over the bore
     [[nodiscard]] Real pressure_gradient() const noexcept { return gradient_; } // [Pa/m] last step
     [[nodiscard]] Real wall_shear() const;     // [Pa] mean of the wall law; 0 in laminar flow
     [[nodiscard]] Real kinetic_energy() const; // [J/kg] per mass

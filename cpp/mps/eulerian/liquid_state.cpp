@@ -7,6 +7,24 @@
 /// What a liquid on nodes is told and asked between its steps.
 namespace mpsdem::mps::eulerian {
 
+namespace {
+
+std::vector<Real> packed(const Field& rows) {
+    std::vector<Real> out;
+    out.reserve(rows.rows() * rows.stations());
+    for (std::size_t i = 0; i < rows.rows(); ++i)
+        out.insert(out.end(), rows[i], rows[i] + rows.stations());
+    return out;
+}
+
+void unpack(std::span<const Real> values, Field& rows) {
+    for (std::size_t i = 0; i < rows.rows(); ++i)
+        std::copy_n(values.data() + i * rows.stations(), rows.stations(), rows[i]);
+    rows.wrap();
+}
+
+} // namespace
+
 void Liquid::momentum_source(std::span<const Vec3> acceleration) {
     if (acceleration.empty()) {
         source_ = VectorField();
@@ -37,6 +55,10 @@ std::vector<Real> Liquid::pressure() const {
     }
     for (Real& p : out) p -= mean / weights;
     return out;
+}
+
+std::vector<Real> Liquid::viscosity() const {
+    return packed(nu_t_);
 }
 
 /// Volume flow of the first nodes over the stations' number [m3/s].
@@ -87,24 +109,6 @@ Real Liquid::pressure_noise() const {
             sum += section_.area(i) * p[i * stations() + k] * p[i * stations() + k];
     return std::sqrt(sum / (bore_area_ * static_cast<Real>(stations())));
 }
-
-namespace {
-
-std::vector<Real> packed(const Field& rows) {
-    std::vector<Real> out;
-    out.reserve(rows.rows() * rows.stations());
-    for (std::size_t i = 0; i < rows.rows(); ++i)
-        out.insert(out.end(), rows[i], rows[i] + rows.stations());
-    return out;
-}
-
-void unpack(std::span<const Real> values, Field& rows) {
-    for (std::size_t i = 0; i < rows.rows(); ++i)
-        std::copy_n(values.data() + i * rows.stations(), rows.stations(), rows[i]);
-    rows.wrap();
-}
-
-} // namespace
 
 Liquid::Snapshot Liquid::snapshot() const {
     Snapshot out{{}, packed(phi_), packed(friction_velocity_), drag_, gradient_};

@@ -82,7 +82,9 @@ public:
             for (std::size_t k = begin; k < end; k += lane_count) {
                 const Lanes u_star = share[0] * load(friction_velocity[node[0] - wall] + k) +
                                      share[1] * load(friction_velocity[node[1] - wall] + k);
-                store(viscosity[i] + k, molecular + l * u_star);
+                const Lanes nu = molecular + l * u_star;
+                store(viscosity[i] + k, nu);
+                most = max(most, nu);
             }
         }
         for (std::size_t i = 0; i < section.interior_count(); ++i) viscosity.wrap(i, begin, end);

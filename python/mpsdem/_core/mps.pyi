@@ -597,6 +597,11 @@ class EulerianLiquid:
         (n, stations, 3) [m/s].
         """
     @property
+    def viscosity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, stations) molecular and eddy viscosity of the last stage [m2/s].
+        """
+    @property
     def wall_shear(self) -> float:
         """
         Mean shear of the wall function [Pa]; 0 in laminar flow.
