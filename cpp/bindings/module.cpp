@@ -9,10 +9,12 @@ namespace mpsdem::bindings {
 void bind_geometry(pybind11::module_ m);
 void bind_neighbors(pybind11::module_ m);
 void bind_linear(pybind11::module_ m);
+void bind_cross_section(pybind11::module_ m);
 void bind_dem(pybind11::module_ m);
 void bind_mps(pybind11::module_ m);
 void bind_mps_operators(pybind11::module_ m);
 void bind_lagrangian(pybind11::module_ m);
+void bind_eulerian(pybind11::module_ m);
 void bind_coupling(pybind11::module_ m);
 
 namespace {
@@ -56,11 +58,14 @@ PYBIND11_MODULE(_core, m) {
 
     b::bind_geometry(m.def_submodule("geometry"));
     b::bind_neighbors(m.def_submodule("neighbors"));
-    b::bind_linear(m.def_submodule("linear"));
+    const auto linear = m.def_submodule("linear");
+    b::bind_linear(linear);
+    b::bind_cross_section(linear);
     b::bind_dem(m.def_submodule("dem"));
     const auto mps = m.def_submodule("mps");
     b::bind_mps(mps);
     b::bind_mps_operators(mps);
     b::bind_lagrangian(mps);
+    b::bind_eulerian(mps);
     b::bind_coupling(m.def_submodule("coupling"));
 }

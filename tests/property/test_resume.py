@@ -49,6 +49,8 @@ CASES = {
     "profile, Schiller-Naumann": case(liquid=WATER, solids={"drag": "schiller_naumann"}),
     "clear liquid": case(liquid=WATER).with_(solids=None),
     "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),
+    "eulerian": case(liquid=WATER | {"model": "eulerian"}),
+    "clear liquid, eulerian": case(liquid=WATER | {"model": "eulerian"}).with_(solids=None),
     "clear liquid, lagrangian": case(liquid=WATER | {"model": "lagrangian"}).with_(solids=None),
 }
 

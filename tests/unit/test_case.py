@@ -93,9 +93,8 @@ def problems(case, *settings, **changes):
             "solids.arrangement.kind = 'blok': must be one of 'block', 'random', 'list'",
         ),
         (
-            "liquid.model=eulerian",
-            "liquid.model = 'eulerian': is not in this version; "
-            "use 'profile', 'lagrangian' or 'auto'",
+            "liquid.model=spectral",
+            "liquid.model = 'spectral': must be 'auto', 'profile', 'eulerian' or 'lagrangian'",
         ),
         ("pipe.ends=open", "pipe.ends = 'open': must be 'periodic'"),
         ("liquid=3", "liquid = 3: must be a table of keys"),

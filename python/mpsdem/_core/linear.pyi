@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['CholmodReference', 'CoarseSpace', 'Jacobi', 'LaplacianMatrix', 'Solution', 'TwoLevelAdditive', 'TwoLevelDeflation', 'conjugate_gradients']
+__all__: list[str] = ['CholmodReference', 'CoarseSpace', 'CrossSectionSolver', 'Jacobi', 'LaplacianMatrix', 'Solution', 'TwoLevelAdditive', 'TwoLevelDeflation', 'conjugate_gradients']
 class LaplacianMatrix:
     """
     Symmetric matrix of a weighted graph of neighbors.
@@ -285,6 +285,50 @@ class CholmodReference:
         -------
         (n,) float64 ndarray
             x, of mean zero over each floating cluster.
+        """
+class CrossSectionSolver:
+    """
+    Direct solver of a Poisson equation on a cross-section, extruded along an axis.
+    
+    ``A p + d2p/dx2 = b`` at interior nodes, ``B p = b`` at the wall's: a Fourier transform along the
+    axis and the eigenbasis of what is left of A when the wall's values are eliminated.
+    
+    Parameters
+    ----------
+    interior : (n, n + w) float64 ndarray
+        A, the interior nodes' columns first [1/m2].
+    wall : (w, n + w) float64 ndarray
+        B.
+    axial : (stations // 2 + 1,) float64 ndarray
+        What d2/dx2 makes of each wave, over the wave, <= 0 [1/m2].
+    stations : int
+        Along the axis, a multiple of 4.
+    
+    Raises
+    ------
+    RuntimeError
+        If A has a growing mode.
+    
+    References
+    ----------
+    Lynch, Rice & Thomas (1964) doi:10.1007/BF01386067.
+    """
+    def __init__(self, *, interior: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axial: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], stations: typing.SupportsInt | typing.SupportsIndex) -> None:
+        ...
+    def solve(self, right_hand_side: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Solve for one right-hand side.
+        
+        Parameters
+        ----------
+        right_hand_side : (n + w, stations) float64 ndarray
+        threads : int
+            The result does not depend on it.
+        
+        Returns
+        -------
+        (n + w, stations) float64 ndarray
+            p; where a constant is free, without it, and without the part of b that no p reaches.
         """
 def conjugate_gradients(matrix: LaplacianMatrix, right_hand_side: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, preconditioner: Jacobi | TwoLevelAdditive | TwoLevelDeflation, tolerance: typing.SupportsFloat | typing.SupportsIndex = 1e-06, max_iterations: typing.SupportsInt | typing.SupportsIndex = 1000, start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> Solution:
     """

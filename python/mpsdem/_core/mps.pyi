@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['LagrangianLiquid', 'LiquidReport', 'MixingLength', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'section_operators', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -418,6 +418,200 @@ class LagrangianLiquid:
         """
         Mean shear of the wall function [Pa]; 0 in laminar flow.
         """
+class NodeLiquidReport:
+    """
+    What a call of EulerianLiquid.advance met.
+    """
+    @property
+    def divergence(self) -> float:
+        """
+        Root mean square divergence at the end, times spacing over speed [-].
+        """
+    @property
+    def friction(self) -> float:
+        """
+        What the walls take up, mean over the call [Pa/m].
+        """
+    @property
+    def limit(self) -> str:
+        """
+        What bound the shortest step: courant, viscosity, or none where one step was enough.
+        """
+    @property
+    def mean_gradient(self) -> float:
+        """
+        Loss of pressure along the pipe, mean over the call [Pa/m].
+        """
+    @property
+    def shortest(self) -> float:
+        """
+        Shortest step that the limits allowed in the call [s].
+        """
+    @property
+    def solve_seconds(self) -> float:
+        """
+        Time spent in the pressure equation [s].
+        """
+    @property
+    def sound(self) -> bool:
+        """
+        False when speeds overflowed or the step became too short.
+        """
+    @property
+    def substeps(self) -> int:
+        ...
+    @property
+    def unexplained(self) -> float:
+        """
+        Of the axial momentum: what convection and pressure add, and must not [Pa/m].
+        """
+class EulerianLiquid:
+    """
+    The liquid of a full, straight, rigid, periodic round pipe on fixed nodes.
+    
+    Least-squares MPS on rings of nodes that repeat along the pipe; the pressure is solved directly.
+    Laminar flow sticks to the wall, turbulent flow has a mixing length and a wall function: a liquid of
+    the mean flow.
+    
+    Parameters
+    ----------
+    place : (n, 2) float64 ndarray
+        Nodes of a cross-section (y, z), those on the wall last [m].
+    area : (n,) float64 ndarray
+        Of each node; sums to that of the bore [m2].
+    wall_count : int
+        Nodes on the wall.
+    stations : int
+        Cross-sections along the pipe, a multiple of 4; station k lies at ``(k + 1/2) / stations`` of
+        the length.
+    spacing : float
+        Between the nodes of a cross-section [m].
+    velocity : (n, stations, 3) float64 ndarray
+        To start with; on the wall it is set by the flow [m/s].
+    pipe_radius, pipe_length : float
+        [m].
+    density, kinematic_viscosity : float
+        [kg/m3], [m2/s].
+    roughness : float
+        Of the wall [m].
+    turbulent : bool
+        Mixing length and log-law wall function; else laminar with no-slip walls.
+    bulk_velocity : float
+        Held at every stage unless a gradient is given [m/s].
+    pressure_gradient : float, optional
+        Given loss of pressure along the pipe [Pa/m].
+    convection : {"upwind", "muscl"}
+        Least-squares upwind, or MUSCL-Rusanov: more damped, and stable where no viscosity helps.
+    scheme : {"rk2", "rk3"}
+        Runge-Kutta of two or three stages.
+    courant : float, optional
+        Largest step over the time to cross a spacing [-]; by default 0.8 with rk2, 1.2 with rk3.
+    threads : int
+        The results do not depend on it.
+    
+    References
+    ----------
+    Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
+    """
+    def __init__(self, *, place: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], area: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall_count: typing.SupportsInt | typing.SupportsIndex, stations: typing.SupportsInt | typing.SupportsIndex, spacing: typing.SupportsFloat | typing.SupportsIndex, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulent: bool, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, convection: str = 'upwind', scheme: str = 'rk2', courant: typing.SupportsFloat | typing.SupportsIndex | None = None, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+        ...
+    def __len__(self) -> int:
+        ...
+    def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex) -> NodeLiquidReport:
+        """
+        Advance by dt [s], in as few substeps as Courant number and viscosity allow.
+        """
+    def body_force(self, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+        """
+        Acceleration of every mass from now on, (3,) [m/s2].
+        """
+    def drive(self, *, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None) -> None:
+        """
+        Drive the liquid otherwise from now on.
+        
+        Parameters
+        ----------
+        bulk_velocity : float
+            Held at every stage unless a gradient is given [m/s].
+        pressure_gradient : float, optional
+            Given loss of pressure along the pipe [Pa/m].
+        """
+    def momentum_source(self, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None) -> None:
+        """
+        Force on the liquid over its mass from now on, (n, stations, 3) [m/s2]; None ends it.
+        """
+    def restore(self, state: dict[str, typing.Any]) -> None:
+        """
+        Continue bit-equal from a `state` of the same liquid.
+        """
+    def state(self) -> dict[str, typing.Any]:
+        """
+        The exact state as arrays, for `restore`.
+        """
+    def velocity_at(self, *, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.SupportsFloat | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Liquid velocity at points, averaged with the kernel W_s over a radius.
+        
+        Parameters
+        ----------
+        points : (n, 3) float64 ndarray
+            Positions, x within the pipe [m].
+        radius : float
+            Of the average [m].
+        
+        Returns
+        -------
+        (n, 3) float64 ndarray
+            [m/s]; zero where no node is within the radius.
+        """
+    @property
+    def bulk_velocity(self) -> float:
+        """
+        Mean over the bore [m/s].
+        """
+    @property
+    def kinetic_energy(self) -> float:
+        """
+        Per mass [J/kg].
+        """
+    @property
+    def largest_viscosity(self) -> float:
+        """
+        Molecular and eddy viscosity, the largest of the last stage [m2/s].
+        """
+    @property
+    def pressure(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, stations) less the mean gradient and static parts [Pa].
+        """
+    @property
+    def pressure_gradient(self) -> float:
+        """
+        Loss along the pipe in the last substep [Pa/m].
+        """
+    @property
+    def pressure_noise(self) -> float:
+        """
+        Scatter of the pressure about its mean [Pa].
+        """
+    @property
+    def stations(self) -> int:
+        ...
+    @property
+    def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, stations, 3) [m/s].
+        """
+    @property
+    def viscosity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, stations) molecular and eddy viscosity of the last stage [m2/s].
+        """
+    @property
+    def wall_shear(self) -> float:
+        """
+        Mean shear of the wall function [Pa]; 0 in laminar flow.
+        """
 def background_gradient(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, pressure: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, background: typing.SupportsFloat | typing.SupportsIndex, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], wall: mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
     """
     Pressure gradient from p_j - p_i, and 2 p_b that spreads the particles evenly.
@@ -679,6 +873,25 @@ def number_density(neighbors: mpsdem._core.neighbors.NeighborList, reference: Re
     References
     ----------
     Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def section_operators(*, place: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], area: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall_count: typing.SupportsInt | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, spacing: typing.SupportsFloat | typing.SupportsIndex) -> dict[str, typing.Any]:
+    """
+    Least-squares operators across a pipe, as matrices.
+    
+    Parameters
+    ----------
+    place, area, wall_count, pipe_radius, spacing
+        As of `EulerianLiquid`.
+    
+    Returns
+    -------
+    dict of (n, n) float64 ndarray
+        ``gradient_y``, ``gradient_z`` [1/m]; ``laplacian`` [1/m2]; ``damping_y``, ``damping_z`` of
+        upwind differences [1/m].
+    
+    References
+    ----------
+    Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
     """
 def shear_rate(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
     """

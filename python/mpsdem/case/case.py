@@ -182,8 +182,8 @@ class Case(Part):
             yield Problem(rule="a case needs [liquid], [solids] or both")
         if self.solids is not None:
             yield from self._solids_that_do_not_fit(self.solids)
-        if self.liquid is not None and self.liquid.model == "lagrangian":
-            yield from self._particles_that_do_not_fit()
+        if self.liquid is not None and self.liquid.computed:
+            yield from self._particles_that_do_not_fit(self.liquid)
         if self.output.every > self.end_time:
             yield Problem(
                 field="output.every",
@@ -200,15 +200,16 @@ class Case(Part):
                     rule=f"must be <= {self.end_time} s, the end_time",
                 )
 
-    def _particles_that_do_not_fit(self) -> Iterable[Problem]:
+    def _particles_that_do_not_fit(self, liquid: Liquid) -> Iterable[Problem]:
         spacing = self.fidelity.resolved_particle_spacing(self.pipe.radius)
-        widest = self.pipe.radius / 2
+        across, share = (4, "a quarter") if liquid.model == "lagrangian" else (6, "a sixth")
+        widest = 2 * self.pipe.radius / across
         if spacing > widest:
             yield Problem(
                 field="fidelity.particle_spacing",
                 value=spacing,
                 unit="m",
-                rule=f"must be <= {widest:g} m, a quarter of the bore",
+                rule=f"must be <= {widest:g} m, {share} of the bore",
             )
         if self.pipe.length < 5 * spacing:
             yield Problem(

@@ -34,8 +34,14 @@ class Fidelity(Part):
         the bore. The layout takes the nearest that divides the radius.
     courant : float
         Largest speed of a computed liquid times its step over the spacing [-].
+    convection : {"upwind", "muscl"}
+        How a liquid on fixed nodes is carried: least-squares upwind, or MUSCL-Rusanov, slower, more
+        damped and more robust.
+    time_scheme : {"rk2", "rk3"}
+        Runge-Kutta steps of a liquid on fixed nodes: two stages bear a ``courant`` of 0.8, three
+        one of 1.2.
     pressure_tolerance : float
-        Residual at which the pressure equation is solved, relative [-].
+        Residual at which the pressure equation of a particle liquid is solved, relative [-].
     pressure_solver : {"two_level", "jacobi", "cholmod"}
         Of a particle liquid: conjugate gradients whose iterations do not grow with the pipe's
         length; the same without a coarse space, for comparison; or a sparse factor each step, the
@@ -59,6 +65,8 @@ class Fidelity(Part):
     smoothing_radius: Annotated[float, Quantity("m", above=0.0)] | None = None
     particle_spacing: Annotated[float, Quantity("m", above=0.0)] | None = None
     courant: Annotated[float, Quantity(above=0.0, at_most=2.0)] = 0.8
+    convection: Literal["upwind", "muscl"] = "upwind"
+    time_scheme: Literal["rk2", "rk3"] = "rk2"
     pressure_tolerance: Annotated[float, Quantity(above=0.0, below=1.0)] = 1e-3
     pressure_solver: Literal["two_level", "jacobi", "cholmod"] = "two_level"
     layout: Literal["rings", "lattice"] = "rings"

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, Literal
 
-from pydantic import field_validator
-
-from mpsdem.case.errors import Problem, refusal
+from mpsdem.case.errors import Problem
 from mpsdem.case.part import Part
 from mpsdem.case.units import Quantity
 
@@ -17,7 +15,7 @@ class Liquid(Part):
 
     Parameters
     ----------
-    model : {"auto", "profile", "lagrangian"}
+    model : {"auto", "profile", "eulerian", "lagrangian"}
         How the flow is computed; ``"auto"`` leaves the choice to the plan.
     density : float
         Density [kg/m3].
@@ -30,26 +28,23 @@ class Liquid(Part):
         that holds the bulk velocity. Where given, ``bulk_velocity`` is that of the start.
     """
 
-    model: Literal["auto", "profile", "lagrangian"] = "auto"
+    model: Literal["auto", "profile", "eulerian", "lagrangian"] = "auto"
     density: Annotated[float, Quantity("kg/m3", above=0.0)]
     kinematic_viscosity: Annotated[float, Quantity("m2/s", above=0.0)]
     bulk_velocity: Annotated[float, Quantity("m/s")]
     pressure_gradient: Annotated[float, Quantity("Pa/m")] | None = None
 
-    @field_validator("model", mode="before")
-    @classmethod
-    def _is_here(cls, model: object) -> object:
-        if model == "eulerian":
-            remedy = "use 'profile', 'lagrangian' or 'auto'"
-            raise refusal(Problem(rule="is not in this version", remedy=remedy))
-        return model
+    @property
+    def computed(self) -> bool:
+        """Whether the flow is computed: asked for, or driven so that no profile is known."""
+        return self.model in ("eulerian", "lagrangian") or self.pressure_gradient is not None
 
     def problems(self) -> Iterable[Problem]:
-        if self.pressure_gradient is not None and self.model != "lagrangian":
+        if self.pressure_gradient is not None and self.model == "profile":
             yield Problem(
                 field="pressure_gradient",
                 value=self.pressure_gradient,
                 unit="Pa/m",
                 rule="drives a computed liquid only",
-                remedy="set model = 'lagrangian', or leave it out",
+                remedy="set model = 'eulerian', 'lagrangian' or 'auto', or leave it out",
             )

@@ -141,7 +141,7 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
 
 
 def liquid_limits(case: Case) -> Iterator[Limit]:
-    """Limits of the step of a particle liquid at its expected speed; none for other liquids.
+    """Limits of the step of a computed liquid at its expected speed; none for other liquids.
 
     Where it is faster than expected, it parts a step itself.
 
@@ -150,7 +150,7 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
     CaseError
         If its solver was not built.
     """
-    if case.liquid is None or liquid_model(case) != "lagrangian":
+    if case.liquid is None or liquid_model(case) not in ("eulerian", "lagrangian"):
         return
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     _require_solver(case)

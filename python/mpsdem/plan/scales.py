@@ -152,22 +152,33 @@ def impact_speed(case: Case) -> float:
 def liquid_model(case: Case) -> str | None:
     """Name of the model that computes the liquid; None without any.
 
-    What is asked for, else the prescribed profile: nothing here makes the liquid yield to solids.
+    What is asked for, else the prescribed profile while it is known; the pipes here being straight,
+    full, rigid and periodic, a liquid that must be computed is computed on fixed nodes.
     """
     if case.liquid is None:
         return None
-    return "profile" if case.liquid.model == "auto" else case.liquid.model
+    if case.liquid.model != "auto":
+        return case.liquid.model
+    return "eulerian" if case.liquid.computed else "profile"
 
 
 def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
-    """Model of the eddy viscosity of a particle liquid; None where the flow is laminar.
+    """Model of the eddy viscosity of a computed liquid; None where the flow is laminar.
 
     Raises
     ------
     CaseError
-        If one is asked for in laminar flow, which has no eddies.
+        If one is asked for in laminar flow, which has no eddies, or on nodes that cannot bear it.
     """
     asked = case.fidelity.turbulence
+    if asked == "smagorinsky" and liquid_model(case) == "eulerian":
+        problem = Problem(
+            field="fidelity.turbulence",
+            value=asked,
+            rule="is for liquid.model = 'lagrangian': on nodes its friction is a third too low",
+            remedy="leave it out",
+        )
+        raise CaseError([problem])
     if not pipe_profile(case).laminar:
         return "mixing_length" if asked == "auto" else asked
     if asked != "auto":
@@ -182,8 +193,8 @@ def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
 
 
 def particle_count(case: Case) -> int:
-    """Particles of the liquid, about; 0 unless it is made of them."""
-    if liquid_model(case) != "lagrangian":
+    """Particles or nodes of the liquid, about; 0 unless it is computed."""
+    if liquid_model(case) not in ("eulerian", "lagrangian"):
         return 0
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     return round(case.pipe.bore_volume / spacing**3)

@@ -24,6 +24,7 @@ FloatArray = NDArray[np.float64]
 _HISTORY = (
     ("iterations\nper step (-)", ("pressure_iterations",)),
     ("largest\nresidual (-)", ("pressure_residual",)),
+    ("divergence\n(-)", ("divergence",)),
     ("scatter of the\ndensity (-)", ("density_scatter",)),
     ("scatter of the\npressure (Pa)", ("pressure_noise",)),
     ("since the last\nframe (-)", ("clamped", "held_back")),

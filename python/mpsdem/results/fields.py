@@ -67,6 +67,7 @@ DIAGNOSTICS = _table(
     ("pressure_residual", "1", "Largest residual of the pressure equation since the last frame"),
     ("density_scatter", "1", "Scatter of the liquid's particle number density about its mean"),
     ("pressure_noise", "Pa", "Scatter of the liquid's pressure, mean gradient and head apart"),
+    ("divergence", "1", "Largest rms divergence of the liquid, times spacing over speed"),
     ("liquid_kinetic_energy", "J/kg", "Kinetic energy of the liquid over its mass"),
     ("clamped", "1", "Pressures cut to their bounds since the last frame", "int64"),
     ("liquid_friction", "Pa/m", "What walls and viscosity took from the liquid's axial momentum"),

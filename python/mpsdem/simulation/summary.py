@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mpsdem.analysis import extent
-from mpsdem.liquids import CLIPS, ParticleLiquid
+from mpsdem.liquids import CLIPS, NodeLiquid, ParticleLiquid
 from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import Results
 from mpsdem.stages import State
@@ -50,7 +50,7 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
     values["momentum_error"] = max(errors, default=None)
     values["warnings"] = [*plan.warnings, *_warnings(values)]
     reasons = {"exchange_error": "the liquid takes no impulse from the solids"}
-    if plan.liquid_model != "lagrangian":
+    if plan.liquid_model not in ("eulerian", "lagrangian"):
         reasons |= dict.fromkeys(("liquid_count", "mass_error"), "the liquid has no particles")
     if plan.case.liquid is None:
         reasons |= dict.fromkeys((*reasons, "liquid_model", *_LIQUID_KEYS), "no liquid")
@@ -105,8 +105,11 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
         "pressure_gradient_static": float(-liquid.density * gravity(case)[0]),
         "friction_factor": pipe_profile(case).friction_factor,
     }
-    if isinstance(state.liquid, ParticleLiquid):
-        values |= _of_particles(state.liquid, results)
+    if isinstance(state.liquid, ParticleLiquid | NodeLiquid):
+        if isinstance(state.liquid, ParticleLiquid):
+            values |= _of_particles(state.liquid, results)
+        else:
+            values |= _of_nodes(state.liquid, results)
         velocity = values["bulk_velocity"]
         if case.solids is None and velocity != 0:
             dynamic = liquid.density * velocity * abs(velocity) / 2
@@ -123,6 +126,15 @@ def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
         "pressure_iterations": _mean(results, "pressure_iterations"),
         "momentum_error": _liquid_momentum_error(results),
         "liquid_clips": {name: int(results.diagnostics[name].sum()) for name in CLIPS},
+    }
+
+
+def _of_nodes(liquid: NodeLiquid, results: Results) -> dict[str, Any]:
+    return {
+        "liquid_count": len(liquid.layout),
+        # what goes through one section and not through another
+        "mass_error": liquid.flux_error,
+        "divergence": float(results.diagnostics["divergence"].max()),
     }
 
 

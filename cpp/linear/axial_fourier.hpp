@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/field.hpp"
+
+#include <memory>
+#include <span>
+
+namespace mpsdem::linear {
+
+/// Discrete Fourier transform of every row of `Field` along its stations. Spectra are rows of
+/// `columns()` numbers: real and imaginary part of the waves 0 to stations / 2, then zeros.
+/// The transform is Eigen's (kissfft); nothing is scaled: there and back multiplies by stations.
+class AxialFourier {
+public:
+    AxialFourier(std::size_t rows, std::size_t stations);
+    AxialFourier(AxialFourier&&) noexcept;
+    AxialFourier& operator=(AxialFourier&&) noexcept;
+    ~AxialFourier();
+
+    [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
+
+    /// Of the rows [0, count).
+    void forward(const Field& values, std::size_t count, int threads,
+                 std::span<Real> spectra) const;
+    void inverse(std::span<const Real> spectra, std::size_t count, int threads,
+                 Field& values) const;
+
+private:
+    struct Plans;
+    std::size_t stations_, columns_;
+    std::unique_ptr<Plans> plans_;
+};
+
+} // namespace mpsdem::linear

@@ -1,0 +1,18 @@
+"""The liquids behind one interface: what carries the solids never asks which one it is."""
+
+from mpsdem.liquids.build import build_liquid, node_layout_of, particle_layout
+from mpsdem.liquids.nodes import NodeLiquid
+from mpsdem.liquids.particles import CLIPS, ParticleLiquid
+from mpsdem.liquids.profile import ProfileLiquid
+from mpsdem.liquids.protocol import Liquid
+
+__all__ = [
+    "CLIPS",
+    "Liquid",
+    "NodeLiquid",
+    "ParticleLiquid",
+    "ProfileLiquid",
+    "build_liquid",
+    "node_layout_of",
+    "particle_layout",
+]

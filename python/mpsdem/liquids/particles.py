@@ -1,0 +1,160 @@
+"""The particle liquid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mpsdem._core import mps
+from mpsdem.geometry import Kind
+from mpsdem.liquids.bins import RINGS, bin_means, ring_edges, section_count
+from mpsdem.liquids.protocol import FloatArray, Stored
+
+#: What the particle liquid cuts and counts, by the names of its report and of the results.
+CLIPS = ("clamped", "viscosity_capped", "shifts_cut", "deficient", "held_back")
+
+
+@dataclass(slots=True, kw_only=True)
+class Tally:
+    """What the particle liquid met since the last frame."""
+
+    time: float = 0.0  # [s]
+    impulse: float = 0.0  # [Pa s/m] of the pressure gradient
+    friction: float = 0.0  # [Pa s/m] taken up by walls and viscosity
+    unexplained: float = 0.0  # [Pa s/m] what the solved pressure did along the pipe
+    substeps: int = 0
+    iterations: int = 0
+    residual: float = 0.0
+    clamped: int = 0
+    viscosity_capped: int = 0
+    shifts_cut: int = 0
+    deficient: int = 0
+    held_back: int = 0
+
+    @property
+    def clips(self) -> dict[str, ArrayLike]:
+        """Counts of all that was cut, by the names of the results."""
+        return {name: getattr(self, name) for name in CLIPS}
+
+
+@dataclass(slots=True, kw_only=True)
+class ParticleLiquid:
+    """MPS proper: moving particles in a full, straight, periodic pipe.
+
+    Parameters
+    ----------
+    particles : mps.LagrangianLiquid
+        What moves.
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost.
+    pipe_radius, pipe_length : float
+        [m].
+    sampling_radius : float
+        Over which the velocity at a point is averaged [m].
+    written : (m,) intp ndarray
+        Which particles the results hold.
+    """
+
+    particles: mps.LagrangianLiquid
+    kind: NDArray[np.int8]
+    pipe_radius: float
+    pipe_length: float
+    sampling_radius: float
+    written: NDArray[np.intp]
+    sound: bool = True
+    tally: Tally = field(default_factory=Tally)
+
+    def advance(self, dt: float) -> None:
+        report = self.particles.advance(dt)
+        tally = self.tally
+        tally.time += dt
+        tally.impulse += report.mean_gradient * dt
+        tally.friction += report.friction * dt
+        tally.unexplained += report.unexplained * dt
+        tally.substeps += report.substeps
+        tally.iterations += report.iterations
+        tally.residual = max(tally.residual, report.residual)
+        for name in CLIPS:
+            setattr(tally, name, getattr(tally, name) + getattr(report, name))
+        self.sound = report.sound
+
+    @property
+    def count_in_bore(self) -> int:
+        """Liquid particles that are where liquid can be."""
+        x = self.particles.position[self.kind == Kind.LIQUID]
+        inside = np.hypot(x[:, 1], x[:, 2]) < self.pipe_radius
+        return int((inside & (x[:, 0] >= 0) & (x[:, 0] < self.pipe_length)).sum())
+
+    def velocity_at(self, position: FloatArray) -> FloatArray:
+        velocity: FloatArray = self.particles.velocity_at(
+            points=position, radius=self.sampling_radius
+        )
+        return velocity
+
+    @property
+    def _edges(self) -> FloatArray:
+        return ring_edges(self.pipe_radius)
+
+    @property
+    def _sections(self) -> int:
+        return section_count(self.pipe_radius, self.pipe_length)
+
+    def static_fields(self) -> dict[str, ArrayLike]:
+        edges = self._edges
+        fields: dict[str, ArrayLike] = {
+            "profile_radius": (edges[1:] + edges[:-1]) / 2,
+            "section_position": (np.arange(self._sections) + 0.5)
+            * (self.pipe_length / self._sections),
+        }
+        if self.written.size:
+            fields["kind"] = self.kind[self.written]
+        return fields
+
+    def frame(self) -> tuple[dict[str, ArrayLike], dict[str, ArrayLike]]:
+        particles, tally = self.particles, self.tally
+        position, velocity = particles.position, particles.velocity
+        pressure = particles.pressure
+        liquid = self.kind == Kind.LIQUID
+        ring = np.digitize(np.hypot(*position[liquid, 1:].T), self._edges[1:-1])
+        share = position[liquid, 0] / self.pipe_length
+        section = np.minimum((share * self._sections).astype(np.intp), self._sections - 1)
+        fields: dict[str, ArrayLike] = {
+            "velocity_profile": bin_means(ring, velocity[liquid, 0], RINGS),
+            "section_pressure": bin_means(section, pressure[liquid], self._sections),
+        }
+        if self.written.size:
+            fields |= {
+                "position": position[self.written],
+                "velocity": velocity[self.written],
+                "pressure": pressure[self.written],
+            }
+        time = tally.time or math.inf  # nothing has acted yet
+        gradient = tally.impulse / tally.time if tally.time else particles.pressure_gradient
+        diagnostics: dict[str, ArrayLike] = {
+            "bulk_velocity": particles.bulk_velocity,
+            "pressure_gradient": gradient,
+            "liquid_friction": tally.friction / time,
+            "liquid_unexplained": tally.unexplained / time,
+            "pressure_iterations": tally.iterations / max(1, tally.substeps),
+            "pressure_residual": tally.residual,
+            "density_scatter": particles.density_scatter,
+            "pressure_noise": particles.pressure_noise,
+            "liquid_kinetic_energy": particles.kinetic_energy,
+            **tally.clips,
+        }
+        self.tally = Tally()
+        return fields, diagnostics
+
+    def state(self) -> dict[str, Stored]:
+        tally = {f"tally_{name}": getattr(self.tally, name) for name in Tally.__slots__}
+        return {**self.particles.state(), **tally}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.particles.restore({k: v for k, v in state.items() if not k.startswith("tally_")})
+        for name in Tally.__slots__:
+            setattr(self.tally, name, state[f"tally_{name}"])
