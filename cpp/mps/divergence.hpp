@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
+#include "mps/facing.hpp"
 #include "mps/kind.hpp"
 #include "mps/reference_density.hpp"
 #include "neighbors/neighbor_list.hpp"
@@ -45,8 +46,9 @@ void slip_divergence(const Wall& wall, const ReferenceDensity& reference,
     const Real scale = dimensions / reference.number_density;
     const Real least = nearest_liquid * reference.spacing;
     const auto mirrored = [&](std::size_t liquid, std::size_t solid) {
-        const auto at = wall.at(neighbors.position(liquid));
-        const Real depth = -wall.at(neighbors.position(solid)).distance;
+        const Vec3 particle = neighbors.position(solid);
+        const auto at = facing(wall, neighbors.position(liquid), particle);
+        const Real depth = -facing(wall, particle, particle).distance;
         const Real k = std::min(1 + depth / std::max(at.distance, least), Real{3});
         return (-k * dot(velocity[liquid] - velocity[solid], at.normal)) * at.normal;
     };

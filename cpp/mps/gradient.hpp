@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
+#include "mps/facing.hpp"
 #include "mps/kind.hpp"
 #include "mps/moment.hpp"
 #include "mps/reference_density.hpp"
@@ -72,19 +73,24 @@ inline void corrected_gradient(const ReferenceDensity& reference,
 ///
 /// The background p_b [Pa] spreads the particles evenly; along the wall it would drag. 0.02 rho U^2
 /// holds the scatter of the density near 0.02 at the price of 3 % in friction; p_b must stay below
-/// 0.2 rho (dx/dt)^2. n is the wall's at particle i.
+/// 0.2 rho (dx/dt)^2. n is that of j's wall at particle i.
 template <geometry::Surface Wall>
 void background_gradient(Real background, const Wall& wall, const ReferenceDensity& reference,
                          const neighbors::NeighborList& neighbors, std::span<const Kind> kind,
                          std::span<const Real> pressure, int threads, std::span<Vec3> result) {
     const Real scale = dimensions / reference.number_density;
     parallel_for(neighbors.size(), threads, [&](std::size_t i) {
-        const Vec3 n = wall.at(neighbors.position(i)).normal;
+        const Vec3 x = neighbors.position(i);
         Vec3 sum, push;
         neighbors.each(i, [&](Index j, const Vec3& r) {
             const Real factor = reference.weight.over_square(dot(r, r));
             sum += (factor * (pressure[j] - pressure[i])) * r;
-            push += kind[j] == kind[i] ? factor * r : (factor * dot(r, n)) * n;
+            if (kind[j] == kind[i]) {
+                push += factor * r;
+            } else {
+                const Vec3 n = facing(wall, x, neighbors.position(j)).normal;
+                push += (factor * dot(r, n)) * n;
+            }
         });
         result[i] = scale * (sum + (2 * background) * push);
     });

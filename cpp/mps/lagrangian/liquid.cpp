@@ -25,6 +25,11 @@ constexpr Real viscous_limit = 0.1;  // [-] largest nu dt / dx^2
 constexpr Real most_substeps = 1e4;  // [-] of one call; beyond it the speeds have run away
 constexpr int most_halvings = 5;     // [-] of one call
 constexpr int most_iterations = 500; // [-] of the pressure equation
+constexpr Real spare_places = 0.05;  // [-] of the liquid, for what a plate brings in
+// [-] of a section's difference from the plate's velocity, made good in a step: the disorder of the
+// particles that come and go is not followed, and a lasting difference does not build up
+constexpr Real flux_feedback = 0.1;
+constexpr Real outlet_hold = 100; // [-] Dirichlet part over n0: p' is held to zero within a percent
 constexpr Index none = std::numeric_limits<Index>::max();
 
 template <class T>
@@ -34,17 +39,26 @@ void reorder(std::vector<T>& values, const std::vector<Index>& order) {
     values = std::move(sorted);
 }
 
+Ends ends_of(Real pipe_length, const std::optional<PushPlate>& plate, std::span<const Kind> kind) {
+    if (!plate) return Ends(pipe_length);
+    const Real length = plate->stroke + plate->settling + pipe_length + plate->outlet;
+    return {pipe_length, *plate,
+            static_cast<Real>(std::ranges::count(kind, Kind::liquid)) / length};
+}
+
 } // namespace
 
 Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
-               std::span<const Kind> kind, const geometry::Cylinder& wall, Real pipe_radius,
-               Real pipe_length, Real density, Real kinematic_viscosity, Real roughness, Flow flow,
-               const Drive& drive, const Numerics& numerics)
-    : wall_(wall), pipe_radius_(pipe_radius), pipe_length_(pipe_length), density_(density),
-      viscosity_(kinematic_viscosity), flow_(flow), drive_(drive), numerics_(numerics),
+               std::span<const Kind> kind, Real pipe_radius, Real pipe_length,
+               const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
+               Real roughness, Flow flow, const Drive& drive, const Numerics& numerics)
+    : ends_(ends_of(pipe_length, plate, kind)),
+      wall_(pipe_radius, plate ? ends_.face() : Bore::no_plate()), pipe_radius_(pipe_radius),
+      pipe_length_(pipe_length), density_(density), viscosity_(kinematic_viscosity), flow_(flow),
+      drive_(drive), numerics_(numerics),
       reference_(numerics.particle_spacing, reach * numerics.particle_spacing),
       wall_function_(kinematic_viscosity, roughness), mixing_length_(pipe_radius),
-      neighbors_(reach * numerics.particle_spacing, pipe_length),
+      neighbors_(reach * numerics.particle_spacing, ends_.period()),
       position_(position.begin(), position.end()), velocity_(velocity.begin(), velocity.end()),
       kind_(kind.begin(), kind.end()) {
     require(position.size() == velocity.size() && position.size() == kind.size(),
@@ -55,6 +69,13 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     require(numerics.threads >= 1, "Liquid: threads must be >= 1");
     liquid_count_ = static_cast<std::size_t>(std::ranges::count(kind_, Kind::liquid));
     require(liquid_count_ > 0, "Liquid: at least one liquid particle is needed");
+    places_ = size();
+    if (plate)
+        places_ += static_cast<std::size_t>(spare_places * static_cast<Real>(liquid_count_)) + 1;
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (!ends_.periodic() && kind_[i] != Kind::liquid && wall_.of_plate(position_[i]))
+            velocity_[i] = {plate->velocity, 0, 0};
+    }
     pressure_.assign(size(), 0);
     id_.resize(size());
     std::iota(id_.begin(), id_.end(), Index{0});
@@ -102,6 +123,7 @@ bool Liquid::step(Real dt, AdvanceReport& report) {
     neighbors_.find(position_, numerics_.threads);
     const std::vector<Vec3> velocity_before = velocity_;
     const Real before = bulk_velocity();
+    const AxialBins bins_before = axial_velocity();
     predict(dt, report);
     friction_ = density_ * (before - bulk_velocity()) / dt;
     assemble(dt);
@@ -110,14 +132,15 @@ bool Liquid::step(Real dt, AdvanceReport& report) {
         return false;
     }
     take_pressure(report);
-    correct(dt);
+    correct(dt, bins_before);
     move(dt, report);
+    if (!ends_.periodic()) move_plate(dt, report);
     return true;
 }
 
 /// Put neighbors in space near in memory.
 void Liquid::sort() {
-    const auto order = neighbors::cell_order(position_, neighbors_.radius(), pipe_length_);
+    const auto order = neighbors::cell_order(position_, neighbors_.radius(), ends_.period());
     reorder(position_, order);
     reorder(velocity_, order);
     reorder(kind_, order);
@@ -151,7 +174,7 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
         add_wall_shear();
     }
     parallel_for(n, threads, [&](std::size_t i) {
-        if (kind_[i] == Kind::liquid) velocity_[i] += dt * acceleration_[i];
+        if (moves(i)) velocity_[i] += dt * acceleration_[i];
     });
 }
 
@@ -159,12 +182,12 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
 /// carry the shear of the whole wall, however many they are at the moment.
 void Liquid::add_wall_shear() {
     const Real dx = numerics_.particle_spacing;
-    const auto liquid = static_cast<Real>(liquid_count_);
-    std::size_t layer = 0;
+    std::size_t layer = 0, liquid = 0;
     Real sum = 0; // of shear over density
     scalar_.assign(size(), 0);
     for (std::size_t i = 0; i < size(); ++i) {
-        if (kind_[i] != Kind::liquid) continue;
+        if (!moves(i)) continue;
+        ++liquid;
         const Real distance = wall_.at(position_[i]).distance;
         if (distance >= dx) continue;
         const Real speed = norm(velocity_[i]);
@@ -177,7 +200,7 @@ void Liquid::add_wall_shear() {
     if (layer == 0) return;
     const auto count = static_cast<Real>(layer);
     // wall area over the layer's volume: 2 pi R L / (count pi R^2 L / liquid)
-    const Real per_volume = 2 * liquid / (pipe_radius_ * count);
+    const Real per_volume = 2 * static_cast<Real>(liquid) / (pipe_radius_ * count);
     parallel_for(size(), numerics_.threads, [&](std::size_t i) {
         acceleration_[i] -= (per_volume * scalar_[i]) * velocity_[i];
     });
@@ -188,7 +211,7 @@ void Liquid::add_wall_shear() {
 bool Liquid::solve_pressure(AdvanceReport& report) {
     const auto start = std::chrono::steady_clock::now();
     const int threads = numerics_.threads;
-    const linear::LaplacianMatrix matrix(row_, column_, weight_, {}, threads);
+    const linear::LaplacianMatrix matrix(row_, column_, weight_, dirichlet_, threads);
     const linear::Clusters clusters(matrix);
     bool solved = false;
     for (int attempt = 0; attempt < 2 && !solved; ++attempt) {
@@ -201,7 +224,8 @@ bool Liquid::solve_pressure(AdvanceReport& report) {
             preconditioner_->follow(matrix, unknown_position_);
         } else {
             preconditioner_.emplace(
-                matrix, linear::Cloud{unknown_position_, numerics_.particle_spacing, pipe_length_},
+                matrix,
+                linear::Cloud{unknown_position_, numerics_.particle_spacing, ends_.period()},
                 threads);
         }
         const auto solve =
@@ -216,7 +240,8 @@ bool Liquid::solve_pressure(AdvanceReport& report) {
     return solved;
 }
 
-/// Take over p' with mean zero in the liquid, cut to the limit; a ghost gets the wall's.
+/// Take over p' cut to the limit, with mean zero in the liquid where nothing holds it; a ghost gets
+/// the wall's.
 void Liquid::take_pressure(AdvanceReport& report) {
     Real mean = 0, change = 0;
     for (std::size_t k = 0; k < particle_.size(); ++k)
@@ -228,9 +253,10 @@ void Liquid::take_pressure(AdvanceReport& report) {
                            : std::numeric_limits<Real>::infinity();
     for (std::size_t k = 0; k < particle_.size(); ++k) {
         const std::size_t i = particle_[k];
-        const Real p = std::clamp(solution_[k] - mean, -limit, limit);
+        const Real about = std::clamp(solution_[k] - mean, -limit, limit);
+        const Real p = ends_.periodic() ? about : mean + about;
         if (kind_[i] == Kind::liquid) {
-            if (p != solution_[k] - mean) ++report.clamped;
+            if (about != solution_[k] - mean) ++report.clamped;
             change += (p - pressure_[i]) * (p - pressure_[i]);
         }
         pressure_[i] = p;
@@ -284,53 +310,87 @@ void Liquid::assemble(Real dt) {
             column_[at] = unknown_[j];
             weight_[at++] = static_cast<float>(reference_.weight(norm(r)));
         });
-        right_hand_side_[k] = kind_[i] == Kind::liquid ? scale * scalar_[i] : 0;
+        right_hand_side_[k] = moves(i) ? scale * scalar_[i] : 0;
         solution_[k] = pressure_[i];
         unknown_position_[k] = neighbors_.position(i);
     });
+    dirichlet_.clear();
+    if (!ends_.periodic()) {
+        dirichlet_.assign(unknowns, 0);
+        for (std::size_t k = 0; k < unknowns; ++k)
+            if (!ends_.inside(position_[particle_[k]]))
+                dirichlet_[k] = outlet_hold * reference_.number_density;
+    }
     remove_axial_bias();
 }
 
 /// The disorder of the particles leaves in the source a random axial wave, which the solve would
 /// amplify with the length of the pipe. In a full rigid pipe the flux through every section is the
-/// same: the source's mean over each diameter of length is zero, and is made so.
+/// same, and a plate's too: the source's mean over each diameter of length is zero, and is made so.
 void Liquid::remove_axial_bias() {
-    const auto bins = std::max<std::size_t>(
-        1, static_cast<std::size_t>(std::lround(pipe_length_ / (2 * pipe_radius_))));
-    const Real width = pipe_length_ / static_cast<Real>(bins);
-    std::vector<Real> sum(bins), count(bins);
-    for (std::size_t k = 0; k < particle_.size(); ++k) {
-        if (kind_[particle_[k]] != Kind::liquid) continue;
-        const auto b = std::min(static_cast<std::size_t>(unknown_position_[k].x / width), bins - 1);
-        sum[b] += right_hand_side_[k];
-        count[b] += 1;
-    }
-    for (std::size_t b = 0; b < bins; ++b) sum[b] /= std::max(count[b], 1.);
+    AxialBins bias = ends_.bins(2 * pipe_radius_);
+    for (std::size_t k = 0; k < particle_.size(); ++k)
+        if (moves(particle_[k])) bias.add(unknown_position_[k].x, right_hand_side_[k]);
+    bias.take_means();
     parallel_for(particle_.size(), numerics_.threads, [&](std::size_t k) {
-        if (kind_[particle_[k]] != Kind::liquid) return;
-        const Real place = unknown_position_[k].x / width - 0.5;
-        const Real below = std::floor(place);
-        const auto b = static_cast<std::size_t>(below + static_cast<Real>(bins)) % bins;
-        const Real share = place - below;
-        right_hand_side_[k] -= (1 - share) * sum[b] + share * sum[(b + 1) % bins];
+        if (moves(particle_[k])) right_hand_side_[k] -= bias.at(unknown_position_[k].x);
     });
 }
 
-/// Gradient of p', then the mean axial gradient: given, or what holds the bulk velocity.
-void Liquid::correct(Real dt) {
+/// Gradient of p', then what drives the liquid along the pipe.
+void Liquid::correct(Real dt, const AxialBins& before) {
     const Real scale = density_ * drive_.bulk_velocity * drive_.bulk_velocity;
     background_gradient(numerics_.background * scale, wall_, reference_, neighbors_, kind_,
                         pressure_, numerics_.threads, acceleration_);
-    const Real before = bulk_velocity();
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) velocity_[i] -= (dt / density_) * acceleration_[i];
     const Real bulk = bulk_velocity();
-    unexplained_ = density_ * (bulk - before) / dt;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (moves(i)) velocity_[i] -= (dt / density_) * acceleration_[i];
+    unexplained_ = density_ * (bulk_velocity() - bulk) / dt;
+    if (ends_.periodic())
+        hold_bulk_velocity(dt);
+    else
+        hold_flux_of_plate(dt, before);
+}
+
+/// The mean axial gradient: given, or what holds the bulk velocity.
+void Liquid::hold_bulk_velocity(Real dt) {
     gradient_ = drive_.pressure_gradient ? *drive_.pressure_gradient
-                                         : density_ * (drive_.bulk_velocity - bulk) / dt;
+                                         : density_ * (drive_.bulk_velocity - bulk_velocity()) / dt;
     const Real kick = dt * gradient_ / density_;
     for (std::size_t i = 0; i < size(); ++i)
         if (kind_[i] == Kind::liquid) velocity_[i].x += kick;
+}
+
+/// The axial gradient that gives each section back what it lost in this step, and brings it nearer
+/// to the plate's velocity. The loss of pressure along the bore is its mean and what p' falls.
+void Liquid::hold_flux_of_plate(Real dt, const AxialBins& before) {
+    const AxialBins after = axial_velocity();
+    const Real aim = ends_.plate_velocity();
+    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
+        scalar_[i] = 0;
+        if (!moves(i)) return;
+        const Real was = before.at(position_[i].x);
+        scalar_[i] = was - after.at(position_[i].x) + flux_feedback * (aim - was);
+        velocity_[i].x += scalar_[i];
+    });
+    const Real kick = mean_in_bore([&](std::size_t i) { return scalar_[i]; });
+    const Real middle = mean_in_bore([&](std::size_t i) { return position_[i].x; });
+    const Real level = mean_in_bore([&](std::size_t i) { return pressure_[i]; });
+    const Real together = mean_in_bore(
+        [&](std::size_t i) { return (position_[i].x - middle) * (pressure_[i] - level); });
+    const Real spread = mean_in_bore(
+        [&](std::size_t i) { return (position_[i].x - middle) * (position_[i].x - middle); });
+    gradient_ = density_ * kick / dt - together / spread;
+}
+
+/// Mean axial velocity of each diameter of length.
+AxialBins Liquid::axial_velocity() const {
+    AxialBins bins = ends_.bins(2 * pipe_radius_);
+    if (ends_.periodic()) return bins;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (moves(i)) bins.add(position_[i].x, velocity_[i].x);
+    bins.take_means();
+    return bins;
 }
 
 void Liquid::move(Real dt, AdvanceReport& report) {
@@ -342,7 +402,7 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     number_density(reference_.weight, neighbors_, numerics_.threads, density_number_);
     parallel_for(size(), numerics_.threads, [&](std::size_t i) {
         Vec3 sum;
-        if (kind_[i] == Kind::liquid) {
+        if (moves(i)) {
             neighbors_.each(i, [&](Index, const Vec3& r) {
                 sum += reference_.weight.over_square(dot(r, r)) * r;
             });
@@ -362,21 +422,107 @@ void Liquid::move(Real dt, AdvanceReport& report) {
             x.z *= farthest / r;
             ++report.held_back;
         }
-        x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
-        position_[i] = x.x < pipe_length_ ? x : Vec3{0, x.y, x.z};
+        if (ends_.periodic()) {
+            x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
+            if (x.x >= pipe_length_) x.x = 0; // rounded up from just below zero
+        }
+        position_[i] = x;
         report.sound = report.sound && std::isfinite(dot(velocity_[i], velocity_[i])) &&
                        std::isfinite(dot(x, x));
     }
 }
 
+/// The plate goes on, ahead of the liquid next to it, and at the end of its stroke jumps back; what
+/// has passed the outlet is dropped.
+void Liquid::move_plate(Real dt, AdvanceReport& report) {
+    const auto carry = [&](Real distance) {
+        for (std::size_t i = 0; i < size(); ++i) {
+            if (kind_[i] != Kind::liquid && wall_.of_plate(position_[i]))
+                position_[i].x += distance;
+        }
+    };
+    const Real from = ends_.face();
+    ends_.advance(dt);
+    carry(ends_.face() - from);
+    const Real nearest = ends_.face() + nearest_liquid * numerics_.particle_spacing;
+    std::vector<std::uint8_t> kept(size(), 1);
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (kind_[i] != Kind::liquid) continue;
+        if (position_[i].x < nearest) {
+            position_[i].x = nearest;
+            ++report.held_back;
+        }
+        if (ends_.beyond(position_[i])) {
+            kept[i] = 0;
+            ++report.left;
+        }
+    }
+    keep(kept);
+    if (ends_.stroke_done()) {
+        const Real seam = ends_.seam(), face = ends_.face();
+        kept.assign(size(), 1);
+        for (std::size_t i = 0; i < size(); ++i) {
+            if (kind_[i] == Kind::liquid && position_[i].x < seam) {
+                kept[i] = 0;
+                ++report.replaced;
+            }
+        }
+        keep(kept);
+        const Refill refill = ends_.jump_back(position_, velocity_, pressure_, kind_,
+                                              places_ - size(), numerics_.particle_spacing);
+        carry(ends_.face() - face);
+        enter(refill.entrants);
+        ++report.returns;
+        report.entered += refill.entrants.size();
+        report.crowded += refill.crowded;
+    }
+    wall_.place_plate(ends_.face());
+}
+
+/// Drop the particles that are not to be kept.
+void Liquid::keep(const std::vector<std::uint8_t>& kept) {
+    std::vector<Index> order;
+    order.reserve(size());
+    for (std::size_t i = 0; i < size(); ++i)
+        if (kept[i] != 0) order.push_back(static_cast<Index>(i));
+    if (order.size() == size()) return;
+    liquid_count_ -= size() - order.size();
+    reorder(position_, order);
+    reorder(velocity_, order);
+    reorder(kind_, order);
+    reorder(pressure_, order);
+    reorder(density_number_, order);
+    reorder(id_, order);
+}
+
+/// New liquid, in the first places that are free.
+void Liquid::enter(std::span<const Entrant> entrants) {
+    std::vector<std::uint8_t> taken(places_, 0);
+    for (const Index id : id_) taken[id] = 1;
+    Index place = 0;
+    for (const Entrant& entrant : entrants) {
+        while (taken[place] != 0) ++place;
+        position_.push_back(entrant.position);
+        velocity_.push_back(entrant.velocity);
+        pressure_.push_back(entrant.pressure);
+        kind_.push_back(Kind::liquid);
+        density_number_.push_back(reference_.number_density);
+        id_.push_back(place++);
+    }
+    liquid_count_ += entrants.size();
+}
+
 namespace {
 
 template <class T>
-std::vector<T> in_given_order(const std::vector<T>& values, const std::vector<Index>& id) {
-    std::vector<T> out(values.size());
+std::vector<T> in_given_order(const std::vector<T>& values, const std::vector<Index>& id,
+                              std::size_t places, const T& vacant) {
+    std::vector<T> out(places, vacant);
     for (std::size_t i = 0; i < values.size(); ++i) out[id[i]] = values[i];
     return out;
 }
+
+constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
 } // namespace
 
@@ -395,66 +541,83 @@ std::vector<Vec3> Liquid::liquid_velocity() const {
     return of_liquid(velocity_);
 }
 std::vector<Vec3> Liquid::position() const {
-    return in_given_order(position_, id_);
+    return in_given_order(position_, id_, places_, {nan, nan, nan});
 }
 std::vector<Vec3> Liquid::velocity() const {
-    return in_given_order(velocity_, id_);
+    return in_given_order(velocity_, id_, places_, {nan, nan, nan});
 }
 std::vector<Kind> Liquid::kind() const {
-    return in_given_order(kind_, id_);
+    return in_given_order(kind_, id_, places_, Kind::liquid);
 }
 std::vector<Real> Liquid::pressure() const {
-    return in_given_order(pressure_, id_);
+    return in_given_order(pressure_, id_, places_, nan);
+}
+
+template <class Value>
+Real Liquid::mean_in_bore(const Value& value) const {
+    Real sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (!counts(i)) continue;
+        sum += value(i);
+        ++count;
+    }
+    return sum / static_cast<Real>(count);
+}
+
+std::size_t Liquid::count_in_bore() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < size(); ++i) count += counts(i) ? 1 : 0;
+    return count;
 }
 
 Real Liquid::bulk_velocity() const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) sum += velocity_[i].x;
-    return sum / static_cast<Real>(liquid_count_);
+    return mean_in_bore([&](std::size_t i) { return velocity_[i].x; });
 }
 
 Real Liquid::kinetic_energy() const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) sum += dot(velocity_[i], velocity_[i]) / 2;
-    return sum / static_cast<Real>(liquid_count_);
+    return mean_in_bore([&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; });
 }
 
 std::vector<Real> Liquid::density_ratio() const {
-    if (density_number_.empty()) return std::vector<Real>(size(), 1);
-    Real mean = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) mean += density_number_[i];
-    mean /= static_cast<Real>(liquid_count_);
-    std::vector<Real> ratio = in_given_order(density_number_, id_);
+    if (density_number_.empty()) return std::vector<Real>(places_, 1);
+    const Real mean = mean_in_bore([&](std::size_t i) { return density_number_[i]; });
+    std::vector<Real> ratio = in_given_order(density_number_, id_, places_, nan);
     for (Real& r : ratio) r /= mean;
     return ratio;
 }
 
 Real Liquid::density_scatter() const {
     const std::vector<Real> ratio = density_ratio();
-    Real sum = 0;
-    for (std::size_t i = 0; i < size(); ++i)
-        if (kind_[i] == Kind::liquid) sum += (ratio[id_[i]] - 1) * (ratio[id_[i]] - 1);
-    return std::sqrt(sum / static_cast<Real>(liquid_count_));
+    return std::sqrt(
+        mean_in_bore([&](std::size_t i) { return (ratio[id_[i]] - 1) * (ratio[id_[i]] - 1); }));
 }
 
 Liquid::Snapshot Liquid::snapshot() const {
-    Snapshot out{position_, velocity_, pressure_, {}, id_};
+    Snapshot out{position_, velocity_, pressure_, {}, id_, ends_.state()};
     for (const Kind k : kind_) out.kind.push_back(static_cast<std::int8_t>(k));
     return out;
 }
 
 void Liquid::restore(const Snapshot& s) {
-    require(s.position.size() == size() && s.velocity.size() == size() &&
-                s.pressure.size() == size() && s.kind.size() == size() && s.id.size() == size(),
+    const std::size_t n = s.position.size();
+    const auto liquid = static_cast<std::size_t>(
+        std::ranges::count(s.kind, static_cast<std::int8_t>(Kind::liquid)));
+    const bool alike = ends_.periodic() ? n == size() : n <= places_;
+    require(alike && s.velocity.size() == n && s.pressure.size() == n && s.kind.size() == n &&
+                s.id.size() == n && n - liquid == size() - liquid_count_ &&
+                std::ranges::all_of(s.id, [&](Index id) { return id < places_; }),
             "restore: the snapshot belongs to another liquid");
+    ends_.restore(s.ends);
+    if (!ends_.periodic()) wall_.place_plate(ends_.face());
     position_ = s.position;
     velocity_ = s.velocity;
     pressure_ = s.pressure;
     id_ = s.id;
-    for (std::size_t i = 0; i < size(); ++i) kind_[i] = static_cast<Kind>(s.kind[i]);
+    kind_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) kind_[i] = static_cast<Kind>(s.kind[i]);
+    liquid_count_ = liquid;
+    density_number_.clear();
     preconditioner_.reset();
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "geometry/cylinder.hpp"
 #include "linear/conjugate_gradients.hpp"
 #include "linear/two_level.hpp"
 #include "mps/kind.hpp"
+#include "mps/lagrangian/bore.hpp"
+#include "mps/lagrangian/ends.hpp"
 #include "mps/reference_density.hpp"
 #include "mps/turbulence.hpp"
 #include "mps/wall_function.hpp"
@@ -50,11 +51,17 @@ struct AdvanceReport {
     std::size_t shifts_cut = 0;       // shifts cut to their longest
     std::size_t deficient = 0;        // particles whose neighbors fix no Laplacian: no viscosity
     std::size_t held_back = 0; // particles kept from going nearer to the wall than 0.3 spacings
+    std::size_t returns = 0;   // of the plate
+    std::size_t entered = 0;   // particles that came to be behind it
+    std::size_t replaced = 0;  // particles between plate and bore that went for them
+    std::size_t crowded = 0;   // particles left out there, too near to others
+    std::size_t left = 0;      // particles that went through the outlet
     Real solve_seconds = 0;    // [s] in the pressure equation, set-up included
     bool sound = true;         // false: the pressure could not be solved, or speeds overflowed
 };
 
-/// The particle liquid of a full, straight, rigid, periodic pipe: MPS proper.
+/// The particle liquid of a full, straight, rigid pipe: MPS proper. The pipe is periodic, or a
+/// plate pushes the liquid through it.
 ///
 /// A step finds the neighbors once and takes every operator there:
 ///
@@ -65,6 +72,8 @@ struct AdvanceReport {
 ///
 /// p' is what is left of the pressure when every uniform acceleration and the mean axial gradient G
 /// are split off: in a full rigid pipe these move nothing, so gravity does not enter at all.
+/// Between a plate and an outlet the flux through every section is the plate's: G, a function of x,
+/// holds the mean velocity of each diameter of length to it, and p' is 0 behind the outlet.
 /// Stable where it was measured, but dissipative: disturbances lose most of their energy within
 /// fifteen radii. It is a liquid of the mean flow, not of its eddies.
 ///
@@ -73,10 +82,11 @@ struct AdvanceReport {
 class Liquid {
 public:
     /// Particles as `ring_layout` or `lattice_layout` places them; velocity of the walls is zero.
+    /// With a plate, as `push_plate_layout` does: wall and ghosts inside the pipe's radius are it.
     Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
-           std::span<const Kind> kind, const geometry::Cylinder& wall, Real pipe_radius,
-           Real pipe_length, Real density, Real kinematic_viscosity, Real roughness, Flow flow,
-           const Drive& drive, const Numerics& numerics);
+           std::span<const Kind> kind, Real pipe_radius, Real pipe_length,
+           const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
+           Real roughness, Flow flow, const Drive& drive, const Numerics& numerics);
 
     /// Advance by dt [s], in as many equal substeps as the Courant number and viscosity ask for.
     AdvanceReport advance(Real dt);
@@ -85,14 +95,18 @@ public:
     void drive(const Drive& drive) { drive_ = drive; }
 
     /// The liquid's own particles, without wall and ghosts, in one order.
-    [[nodiscard]] std::vector<Vec3> liquid_position() const; // [m]
-    [[nodiscard]] std::vector<Vec3> liquid_velocity() const; // [m/s]
-    [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }
+    [[nodiscard]] std::vector<Vec3> liquid_position() const;              // [m]
+    [[nodiscard]] std::vector<Vec3> liquid_velocity() const;              // [m/s]
+    [[nodiscard]] Real period() const noexcept { return ends_.period(); } // [m] 0: none
 
-    [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
+    /// Particles there may be: each has its place in the arrays below, in the order they were
+    /// given. A place that no particle holds at the moment is liquid, with NaN for a position.
+    [[nodiscard]] std::size_t places() const noexcept { return places_; }
     [[nodiscard]] std::size_t liquid_count() const noexcept { return liquid_count_; }
-    [[nodiscard]] std::vector<Vec3> position() const; // [m] in the order they were given
-    [[nodiscard]] std::vector<Vec3> velocity() const; // [m/s]
+    [[nodiscard]] std::size_t count_in_bore() const;
+    [[nodiscard]] Real plate_face() const noexcept { return ends_.face(); } // [m]
+    [[nodiscard]] std::vector<Vec3> position() const;                       // [m]
+    [[nodiscard]] std::vector<Vec3> velocity() const;                       // [m/s]
     [[nodiscard]] std::vector<Kind> kind() const;
     [[nodiscard]] std::vector<Real> pressure() const;      // [Pa] p'
     [[nodiscard]] std::vector<Real> density_ratio() const; // [-] n / mean n, of the last step
@@ -111,6 +125,7 @@ public:
         std::vector<Real> pressure;
         std::vector<std::int8_t> kind;
         std::vector<Index> id;
+        std::vector<Real> ends;
     };
     [[nodiscard]] Snapshot snapshot() const;
     void restore(const Snapshot& snapshot);
@@ -118,6 +133,18 @@ public:
 private:
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report);
+    [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
+    /// Whether a particle is liquid that its forces move.
+    [[nodiscard]] bool moves(std::size_t i) const noexcept {
+        return kind_[i] == Kind::liquid && ends_.inside(position_[i]);
+    }
+    /// Whether it is liquid of the bore.
+    [[nodiscard]] bool counts(std::size_t i) const noexcept {
+        return kind_[i] == Kind::liquid && ends_.in_bore(position_[i]);
+    }
+    template <class Value>
+    [[nodiscard]] Real mean_in_bore(const Value& value) const;
+    [[nodiscard]] AxialBins axial_velocity() const;
     void sort();
     void predict(Real dt, AdvanceReport& report);
     [[nodiscard]] std::vector<Vec3> of_liquid(const std::vector<Vec3>& values) const;
@@ -126,10 +153,16 @@ private:
     void take_pressure(AdvanceReport& report);
     void assemble(Real dt);
     void remove_axial_bias();
-    void correct(Real dt);
+    void correct(Real dt, const AxialBins& before);
+    void hold_bulk_velocity(Real dt);
+    void hold_flux_of_plate(Real dt, const AxialBins& before);
     void move(Real dt, AdvanceReport& report);
+    void move_plate(Real dt, AdvanceReport& report);
+    void keep(const std::vector<std::uint8_t>& kept);
+    void enter(std::span<const Entrant> entrants);
 
-    geometry::Cylinder wall_;
+    Ends ends_;
+    Bore wall_;
     Real pipe_radius_, pipe_length_; // [m]
     Real density_;                   // [kg/m3]
     Real viscosity_;                 // [m2/s] kinematic
@@ -141,6 +174,7 @@ private:
     MixingLength mixing_length_;
     neighbors::NeighborList neighbors_;
     std::size_t liquid_count_ = 0;
+    std::size_t places_ = 0;
 
     std::vector<Vec3> position_, velocity_;
     std::vector<Kind> kind_;
@@ -154,6 +188,7 @@ private:
     std::vector<Index> particle_; // by unknown
     std::vector<Index> row_, column_;
     std::vector<float> weight_;
+    std::vector<Real> dirichlet_;
     std::vector<Real> right_hand_side_, solution_;
     std::vector<Vec3> unknown_position_;
     std::optional<linear::TwoLevelAdditive> preconditioner_;
