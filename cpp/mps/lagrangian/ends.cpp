@@ -11,7 +11,9 @@ namespace mpsdem::mps::lagrangian {
 
 namespace {
 
-constexpr Real crowded = 0.5; // [-] spacings nearer than which no particle is put to another
+constexpr Real owed_share = 0.25; // [-] of what the bore is short of, added to every later filling
+constexpr int turns_tried = 8;    // [-] of a slab
+constexpr Real crowded = 0.5;     // [-] spacings nearer than which no particle is put to another
 
 /// The liquid of the bore, from the entrance to the outlet.
 std::vector<Index> along_the_bore(const Ends& ends, std::span<const Vec3> position,
@@ -24,9 +26,20 @@ std::vector<Index> along_the_bore(const Ends& ends, std::span<const Vec3> positi
     return order;
 }
 
-Vec3 turned(const Vec3& v, Real cosine, Real sine) noexcept {
-    return {v.x, cosine * v.y - sine * v.z, sine * v.y + cosine * v.z};
-}
+/// A turn about the axis of the pipe.
+class Turn {
+public:
+    explicit Turn(Real share)
+        : cosine_(std::cos(2 * std::numbers::pi * share)),
+          sine_(std::sin(2 * std::numbers::pi * share)) {}
+    /// Of a vector, with x in place of its own.
+    [[nodiscard]] Vec3 operator()(const Vec3& v, Real x) const noexcept {
+        return {x, cosine_ * v.y - sine_ * v.z, sine_ * v.y + cosine_ * v.z};
+    }
+
+private:
+    Real cosine_, sine_;
+};
 
 } // namespace
 
@@ -54,10 +67,15 @@ Refill Ends::jump_back(std::span<const Vec3> position, std::span<const Vec3> vel
     const auto [start, turn] = plate_.draws[returns_++ % plate_.draws.size()];
     const auto source = along_the_bore(*this, position, kind);
     const Real length = seam - face_;
-    owed_ += full_ * length;
+    // What has come into the bore of late: where it is short, as next to the seam no particle may
+    // be near to another, the gap gets the more.
+    const Real look = std::min(2 * plate_.stroke, pipe_length_ - seam);
+    const auto came = std::ranges::count_if(
+        source, [&](Index i) { return position[i].x >= seam && position[i].x < seam + look; });
+    owed_ += owed_share * (full_ * look - static_cast<Real>(came));
+    const Real wanted = std::round(full_ * length + owed_);
     const auto count =
-        std::min({static_cast<std::size_t>(std::max(std::round(owed_), 0.)), most, source.size()});
-    owed_ -= static_cast<Real>(count);
+        std::min({static_cast<std::size_t>(std::max(wanted, 0.)), most, source.size()});
     if (count < 2) return refill;
 
     // So many particles in a row, spread over the gap's length: within a percent, their own.
@@ -68,28 +86,36 @@ Refill Ends::jump_back(std::span<const Vec3> position, std::span<const Vec3> vel
     const Real extent = position[slab.back()].x - low;
     const Real between = extent / static_cast<Real>(count - 1);
     const Real stretch = length / (extent + between);
-    const Real cosine = std::cos(2 * std::numbers::pi * turn);
-    const Real sine = std::sin(2 * std::numbers::pi * turn);
-
     std::vector<Vec3> beside; // what is there already next to the seam
     for (std::size_t i = 0; i < position.size(); ++i) {
         const Real ahead = position[i].x - seam;
         if (kind[i] == Kind::liquid && ahead >= 0 && ahead < crowded * spacing)
             beside.push_back(position[i]);
     }
-    for (const Index i : slab) {
-        Vec3 x = turned(position[i], cosine, sine);
-        x.x = face_ + std::max(stretch * (x.x - low + between / 2), nearest_liquid * spacing);
-        const bool near =
-            x.x > seam - crowded * spacing && std::ranges::any_of(beside, [&](const Vec3& other) {
-                return dot(other - x, other - x) < crowded * crowded * spacing * spacing;
-            });
-        if (near)
-            ++refill.crowded;
-        else
-            refill.entrants.push_back({x, turned(velocity[i], cosine, sine), pressure[i]});
+    const auto place = [&](Index i, const Turn& by) {
+        const Real x = stretch * (position[i].x - low + between / 2);
+        return by(position[i], face_ + std::max(x, nearest_liquid * spacing));
+    };
+    const auto near = [&](const Vec3& x) {
+        return x.x > seam - crowded * spacing && std::ranges::any_of(beside, [&](const Vec3& y) {
+                   return dot(y - x, y - x) < crowded * crowded * spacing * spacing;
+               });
+    };
+    // Of some turns the one that leaves out the fewest.
+    Turn best(turn);
+    refill.crowded = count + 1;
+    for (int k = 0; k < turns_tried; ++k) {
+        const Turn by(turn + static_cast<Real>(k) / turns_tried);
+        const auto out = static_cast<std::size_t>(
+            std::ranges::count_if(slab, [&](Index i) { return near(place(i, by)); }));
+        if (out >= refill.crowded) continue;
+        refill.crowded = out;
+        best = by;
     }
-    owed_ += static_cast<Real>(refill.crowded);
+    for (const Index i : slab) {
+        const Vec3 x = place(i, best);
+        if (!near(x)) refill.entrants.push_back({x, best(velocity[i], velocity[i].x), pressure[i]});
+    }
     return refill;
 }
 

@@ -93,7 +93,7 @@ private:
     PushPlate plate_;
     Real full_ = 0;           // [1/m]
     Real face_ = 0;           // [m]
-    Real owed_ = 0;           // [-] particles that earlier fillings fell short of
+    Real owed_ = 0;           // [-] particles that the bore falls short of with a gap just full
     std::size_t returns_ = 0; // [-]
 };
 

@@ -28,7 +28,7 @@ constexpr int most_iterations = 500; // [-] of the pressure equation
 constexpr Real spare_places = 0.05;  // [-] of the liquid, for what a plate brings in
 // [-] of a section's difference from the plate's velocity, made good in a step: the disorder of the
 // particles that come and go is not followed, and a lasting difference does not build up
-constexpr Real flux_feedback = 0.1;
+constexpr Real flux_feedback = 0.3;
 constexpr Real outlet_hold = 100; // [-] Dirichlet part over n0: p' is held to zero within a percent
 constexpr Index none = std::numeric_limits<Index>::max();
 
