@@ -160,6 +160,7 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
                                                           threads, acceleration_, deficient_);
         report.deficient += static_cast<std::size_t>(std::ranges::count(deficient_, 1));
         for (Vec3& a : acceleration_) a = viscosity_ * a;
+        if (!ends_.periodic()) smooth_beside_plate();
     } else {
         scalar_.resize(n);
         eddy_viscosity_.resize(n);
@@ -176,6 +177,18 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
     parallel_for(n, threads, [&](std::size_t i) {
         if (moves(i)) velocity_[i] += dt * acceleration_[i];
     });
+}
+
+/// Within a radius of the plate, where liquid is pressed together and turned round, polynomials
+/// through the neighbors lose their hold: there only the pairwise sum, which can but smooth.
+void Liquid::smooth_beside_plate() {
+    eddy_viscosity_.assign(size(), viscosity_);
+    shift_.resize(size());
+    viscous_acceleration(reference_, neighbors_, kind_, eddy_viscosity_, velocity_,
+                         numerics_.threads, shift_);
+    const Real end = ends_.face() + pipe_radius_;
+    for (std::size_t i = 0; i < size(); ++i)
+        if (position_[i].x < end) acceleration_[i] = shift_[i];
 }
 
 /// Shear of the log law on the liquid nearer to the wall than a spacing. The layer's particles
@@ -450,6 +463,7 @@ void Liquid::move_plate(Real dt, AdvanceReport& report) {
         if (kind_[i] != Kind::liquid) continue;
         if (position_[i].x < nearest) {
             position_[i].x = nearest;
+            velocity_[i].x = std::max(velocity_[i].x, ends_.plate_velocity());
             ++report.held_back;
         }
         if (ends_.beyond(position_[i])) {

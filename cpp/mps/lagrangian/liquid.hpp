@@ -148,6 +148,7 @@ private:
     void sort();
     void predict(Real dt, AdvanceReport& report);
     [[nodiscard]] std::vector<Vec3> of_liquid(const std::vector<Vec3>& values) const;
+    void smooth_beside_plate();
     void add_wall_shear();
     [[nodiscard]] bool solve_pressure(AdvanceReport& report);
     void take_pressure(AdvanceReport& report);
