@@ -87,7 +87,9 @@ draws : (n, 2) float64 ndarray
                       "Particles whose neighbors fix no Laplacian: no viscosity acted there.")
         .def_readonly("held_back", &AdvanceReport::held_back,
                       "Particles kept from going nearer to the wall than 0.3 spacings.")
-        .def_readonly("returns", &AdvanceReport::returns, "Returns of the plate.")
+        .def_readonly("pushed", &AdvanceReport::pushed,
+                      "Particles kept from going nearer to the plate than 0.3 spacings.")
+        .def_readonly("plate_returns", &AdvanceReport::plate_returns, "Returns of the plate.")
         .def_readonly("entered", &AdvanceReport::entered,
                       "Particles that came to be behind the plate.")
         .def_readonly("replaced", &AdvanceReport::replaced,

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import mps
 from mpsdem.case import Case
-from mpsdem.geometry import Kind, Layout, ring_layout
-from mpsdem.plan import Plan, clear_gradient, pipe_profile
+from mpsdem.geometry import Kind, Layout, push_plate_layout, ring_layout
+from mpsdem.plan import Plan, clear_gradient, outlet_length, pipe_profile
 
 FloatArray = NDArray[np.float64]
 Stored = NDArray[Any] | int | float
@@ -21,8 +21,12 @@ Stored = NDArray[Any] | int | float
 #: What the particle liquid cuts and counts, by the names of its report and of the results.
 CLIPS = ("clamped", "viscosity_capped", "shifts_cut", "deficient", "held_back")
 
+#: What it counts besides where a plate pushes it.
+PLATE_COUNTS = ("plate_returns", "entered", "replaced", "crowded", "left", "pushed")
+
 _PROFILE_POINTS = 101  # radii of the prescribed profile in the results
 _RINGS = 20  # radial bins of the measured profile
+_SLABS = 256  # slabs that fill the gap behind a push plate, until they come again
 _MOST_WRITTEN = 10_000  # particles of a frame, unless the case says otherwise
 
 
@@ -101,6 +105,17 @@ class Tally:
     shifts_cut: int = 0
     deficient: int = 0
     held_back: int = 0
+    plate_returns: int = 0
+    entered: int = 0
+    replaced: int = 0
+    crowded: int = 0
+    left: int = 0
+    pushed: int = 0
+
+    @property
+    def plate_counts(self) -> dict[str, ArrayLike]:
+        """What the push plate did, by the names of the results."""
+        return {name: getattr(self, name) for name in PLATE_COUNTS}
 
     @property
     def clips(self) -> dict[str, ArrayLike]:
@@ -110,14 +125,18 @@ class Tally:
 
 @dataclass(slots=True, kw_only=True)
 class ParticleLiquid:
-    """MPS proper: moving particles in a full, straight, periodic pipe.
+    """MPS proper: moving particles in a full, straight pipe, periodic or with a push plate.
 
     Parameters
     ----------
     particles : mps.LagrangianLiquid
         What moves.
     kind : (n,) int8 ndarray
-        2 liquid, -2 wall, -1 ghost.
+        Of each place for a particle: 2 liquid, -2 wall, -1 ghost.
+    full_count : int
+        Liquid particles that fill the bore.
+    has_plate : bool
+        Whether a plate pushes the liquid.
     pipe_radius, pipe_length : float
         [m].
     sampling_radius : float
@@ -128,6 +147,8 @@ class ParticleLiquid:
 
     particles: mps.LagrangianLiquid
     kind: NDArray[np.int8]
+    full_count: int
+    has_plate: bool
     pipe_radius: float
     pipe_length: float
     sampling_radius: float
@@ -143,16 +164,21 @@ class ParticleLiquid:
         tally.substeps += report.substeps
         tally.iterations += report.iterations
         tally.residual = max(tally.residual, report.residual)
-        for name in CLIPS:
+        for name in (*CLIPS, *PLATE_COUNTS):
             setattr(tally, name, getattr(tally, name) + getattr(report, name))
         self.sound = report.sound
 
     @property
     def count_in_bore(self) -> int:
         """Liquid particles that are where liquid can be."""
-        x = self.particles.position[self.kind == Kind.LIQUID]
+        return int(self._in_bore(self.particles.position).sum())
+
+    def _in_bore(self, x: FloatArray) -> NDArray[np.bool_]:
+        """Which are liquid of the bore: none without a position, none at the plate."""
         inside = np.hypot(x[:, 1], x[:, 2]) < self.pipe_radius
-        return int((inside & (x[:, 0] >= 0) & (x[:, 0] < self.pipe_length)).sum())
+        along = (x[:, 0] >= 0) & (x[:, 0] < self.pipe_length)
+        result: NDArray[np.bool_] = (self.kind == Kind.LIQUID) & inside & along
+        return result
 
     def velocity_at(self, position: FloatArray) -> FloatArray:
         velocity: FloatArray = self.particles.velocity_at(
@@ -183,7 +209,7 @@ class ParticleLiquid:
         particles, tally = self.particles, self.tally
         position, velocity = particles.position, particles.velocity
         pressure = particles.pressure
-        liquid = self.kind == Kind.LIQUID
+        liquid = self._in_bore(position)
         ring = np.digitize(np.hypot(*position[liquid, 1:].T), self._edges[1:-1])
         share = position[liquid, 0] / self.pipe_length
         section = np.minimum((share * self._sections).astype(np.intp), self._sections - 1)
@@ -207,6 +233,7 @@ class ParticleLiquid:
             "pressure_noise": particles.pressure_noise,
             "liquid_kinetic_energy": particles.kinetic_energy,
             **tally.clips,
+            **(tally.plate_counts if self.has_plate else {}),
         }
         self.tally = Tally()
         return fields, diagnostics
@@ -246,8 +273,30 @@ def _sample(count: int, stride: int | None) -> NDArray[np.intp]:
 
 def particle_layout(case: Case) -> Layout:
     """Where the particles of a case's liquid start."""
-    spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
-    return ring_layout(radius=case.pipe.radius, length=case.pipe.length, spacing=spacing)
+    pipe = case.pipe
+    spacing = case.fidelity.resolved_particle_spacing(pipe.radius)
+    if not pipe.has_plate:
+        return ring_layout(radius=pipe.radius, length=pipe.length, spacing=spacing)
+    return push_plate_layout(
+        radius=pipe.radius,
+        length=pipe.length,
+        spacing=spacing,
+        upstream=pipe.resolved_stroke + pipe.settling_length,
+        downstream=outlet_length(case),
+    )
+
+
+def _push_plate(case: Case) -> mps.PushPlate | None:
+    pipe = case.pipe
+    if case.liquid is None or not pipe.has_plate:
+        return None
+    return mps.PushPlate(
+        velocity=case.liquid.bulk_velocity,
+        stroke=pipe.resolved_stroke,
+        settling=pipe.settling_length,
+        outlet=outlet_length(case),
+        draws=np.random.default_rng(0).random((_SLABS, 2)),
+    )
 
 
 def build_liquid(case: Case, plan: Plan) -> Liquid | None:
@@ -273,6 +322,7 @@ def build_liquid(case: Case, plan: Plan) -> Liquid | None:
         particle_spacing=layout.spacing,
         pipe_radius=pipe.radius,
         pipe_length=pipe.length,
+        plate=_push_plate(case),
         density=liquid.density,
         kinematic_viscosity=liquid.kinematic_viscosity,
         roughness=pipe.roughness,
@@ -283,11 +333,15 @@ def build_liquid(case: Case, plan: Plan) -> Liquid | None:
         tolerance=case.fidelity.pressure_tolerance,
         threads=plan.threads,
     )
+    vacant = len(particles) - len(layout.kind)  # places for what a plate may bring in
+    kind = np.concatenate([layout.kind, np.full(vacant, Kind.LIQUID, dtype=np.int8)])
     return ParticleLiquid(
         particles=particles,
-        kind=layout.kind,
+        kind=kind,
+        full_count=particles.count_in_bore,
+        has_plate=pipe.has_plate,
         pipe_radius=pipe.radius,
         pipe_length=pipe.length,
         sampling_radius=max(plan.smoothing_radius, 2.1 * layout.spacing),
-        written=_sample(len(layout.kind), case.output.liquid_stride),
+        written=_sample(len(kind), case.output.liquid_stride),
     )

@@ -39,6 +39,13 @@ void reorder(std::vector<T>& values, const std::vector<Index>& order) {
     values = std::move(sorted);
 }
 
+void require_drive(const Ends& ends, const Drive& drive) {
+    require(ends.periodic() ||
+                (!drive.pressure_gradient && drive.bulk_velocity == ends.plate_velocity()),
+            "Liquid: a plate drives the liquid: bulk_velocity must be the plate's, and no "
+            "pressure_gradient be given");
+}
+
 Ends ends_of(Real pipe_length, const std::optional<PushPlate>& plate, std::span<const Kind> kind) {
     if (!plate) return Ends(pipe_length);
     const Real length = plate->stroke + plate->settling + pipe_length + plate->outlet;
@@ -63,6 +70,7 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
       kind_(kind.begin(), kind.end()) {
     require(position.size() == velocity.size() && position.size() == kind.size(),
             "Liquid: position, velocity and kind must have the same length");
+    require_drive(ends_, drive);
     require(density > 0, "Liquid: density must be > 0 kg/m3");
     require(numerics.courant > 0, "Liquid: courant must be > 0");
     require(numerics.tolerance > 0, "Liquid: tolerance must be > 0");
@@ -79,6 +87,11 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     pressure_.assign(size(), 0);
     id_.resize(size());
     std::iota(id_.begin(), id_.end(), Index{0});
+}
+
+void Liquid::drive(const Drive& drive) {
+    require_drive(ends_, drive);
+    drive_ = drive;
 }
 
 AdvanceReport Liquid::advance(Real dt) {
@@ -464,7 +477,7 @@ void Liquid::move_plate(Real dt, AdvanceReport& report) {
         if (position_[i].x < nearest) {
             position_[i].x = nearest;
             velocity_[i].x = std::max(velocity_[i].x, ends_.plate_velocity());
-            ++report.held_back;
+            ++report.pushed;
         }
         if (ends_.beyond(position_[i])) {
             kept[i] = 0;
@@ -486,7 +499,7 @@ void Liquid::move_plate(Real dt, AdvanceReport& report) {
                                               places_ - size(), numerics_.particle_spacing);
         carry(ends_.face() - face);
         enter(refill.entrants);
-        ++report.returns;
+        ++report.plate_returns;
         report.entered += refill.entrants.size();
         report.crowded += refill.crowded;
     }

@@ -51,13 +51,14 @@ struct AdvanceReport {
     std::size_t shifts_cut = 0;       // shifts cut to their longest
     std::size_t deficient = 0;        // particles whose neighbors fix no Laplacian: no viscosity
     std::size_t held_back = 0; // particles kept from going nearer to the wall than 0.3 spacings
-    std::size_t returns = 0;   // of the plate
-    std::size_t entered = 0;   // particles that came to be behind it
-    std::size_t replaced = 0;  // particles between plate and bore that went for them
-    std::size_t crowded = 0;   // particles left out there, too near to others
-    std::size_t left = 0;      // particles that went through the outlet
-    Real solve_seconds = 0;    // [s] in the pressure equation, set-up included
-    bool sound = true;         // false: the pressure could not be solved, or speeds overflowed
+    std::size_t pushed = 0;    // the same before the plate, which pushes them
+    std::size_t plate_returns = 0;
+    std::size_t entered = 0;  // particles that came to be behind it
+    std::size_t replaced = 0; // particles between plate and bore that went for them
+    std::size_t crowded = 0;  // particles left out there, too near to others
+    std::size_t left = 0;     // particles that went through the outlet
+    Real solve_seconds = 0;   // [s] in the pressure equation, set-up included
+    bool sound = true;        // false: the pressure could not be solved, or speeds overflowed
 };
 
 /// The particle liquid of a full, straight, rigid pipe: MPS proper. The pipe is periodic, or a
@@ -91,8 +92,8 @@ public:
     /// Advance by dt [s], in as many equal substeps as the Courant number and viscosity ask for.
     AdvanceReport advance(Real dt);
 
-    /// Drive the liquid otherwise from now on.
-    void drive(const Drive& drive) { drive_ = drive; }
+    /// Drive the liquid otherwise from now on. A plate drives it alone.
+    void drive(const Drive& drive);
 
     /// The liquid's own particles, without wall and ghosts, in one order.
     [[nodiscard]] std::vector<Vec3> liquid_position() const;              // [m]

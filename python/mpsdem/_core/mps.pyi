@@ -283,6 +283,16 @@ class LiquidReport:
         Loss of pressure along the pipe, mean over the call [Pa/m].
         """
     @property
+    def plate_returns(self) -> int:
+        """
+        Returns of the plate.
+        """
+    @property
+    def pushed(self) -> int:
+        """
+        Particles kept from going nearer to the plate than 0.3 spacings.
+        """
+    @property
     def replaced(self) -> int:
         """
         Particles between plate and bore that went for them.
@@ -296,11 +306,6 @@ class LiquidReport:
     def retries(self) -> int:
         """
         Pressure solves that had to start anew.
-        """
-    @property
-    def returns(self) -> int:
-        """
-        Returns of the plate.
         """
     @property
     def shifts_cut(self) -> int:

@@ -251,7 +251,14 @@ def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
             if pipe_profile(case).laminar
             else "mixing length and log-law wall function, as the flow is turbulent"
         )
-        reason = f"about {particle_count(case)} particles were asked for; {flow}"
+        asked = "were asked for"
+        if case.pipe.has_plate:
+            asked = (
+                f"move, as a plate pushes them in strokes of {case.pipe.resolved_stroke:g} m, and "
+                f"works in {case.pipe.resolved_stroke + case.pipe.settling_length:g} m of pipe "
+                "upstream"
+            )
+        reason = f"about {particle_count(case)} particles {asked}; {flow}"
         yield Planned(name="AdvanceLiquid", reason=reason)
     if solids is not None:
         if liquid is not None:

@@ -151,11 +151,22 @@ def impact_speed(case: Case) -> float:
 def liquid_model(case: Case) -> str | None:
     """Name of the model that computes the liquid; None without any.
 
-    What is asked for, else the prescribed profile: nothing here makes the liquid yield to solids.
+    What is asked for, else particles for a plate to push, else the prescribed profile: nothing here
+    makes the liquid yield to solids.
     """
     if case.liquid is None:
         return None
-    return "profile" if case.liquid.model == "auto" else case.liquid.model
+    if case.liquid.model != "auto":
+        return case.liquid.model
+    return "lagrangian" if case.pipe.has_plate else "profile"
+
+
+def outlet_length(case: Case) -> float:
+    """Length behind the outlet over which leaving liquid is kept [m].
+
+    Longer than the reach of the operators, 2.1 spacings, so that they are whole at the outlet.
+    """
+    return 3 * case.fidelity.resolved_particle_spacing(case.pipe.radius)
 
 
 def particle_count(case: Case) -> int:
@@ -163,7 +174,10 @@ def particle_count(case: Case) -> int:
     if liquid_model(case) != "lagrangian":
         return 0
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
-    return round(case.pipe.bore_volume / spacing**3)
+    pipe, length = case.pipe, case.pipe.length
+    if pipe.has_plate:
+        length += pipe.resolved_stroke + pipe.settling_length + outlet_length(case)
+    return round(math.pi * pipe.radius**2 * length / spacing**3)
 
 
 def pipe_profile(case: Case) -> mps.PipeProfile:
