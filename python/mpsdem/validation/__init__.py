@@ -11,13 +11,15 @@ from collections.abc import Iterable
 
 from rich.console import Console
 
-from mpsdem.validation import drag, impacts, pipe, rolling
+from mpsdem.validation import drag, impacts, pipe, push_plate, rolling
 from mpsdem.validation.registry import Check, Outcome, Source, collect, select
 from mpsdem.validation.report import report
 
 __all__ = ["CHECKS", "Check", "Outcome", "Source", "run"]
 
-CHECKS = collect(impacts.checks(), rolling.checks(), drag.checks(), pipe.checks())
+CHECKS = collect(
+    impacts.checks(), rolling.checks(), drag.checks(), pipe.checks(), push_plate.checks()
+)
 """All checks by their ids."""
 
 
