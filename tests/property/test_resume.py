@@ -49,6 +49,9 @@ CASES = {
     "profile, Schiller-Naumann": case(liquid=WATER, solids={"drag": "schiller_naumann"}),
     "clear liquid": case(liquid=WATER).with_(solids=None),
     "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),
+    "push plate": case(liquid=WATER | {"model": "lagrangian"}).with_(
+        pipe={"ends": "push-plate", "stroke": 0.05}
+    ),
     "clear liquid, lagrangian": case(liquid=WATER | {"model": "lagrangian"}).with_(solids=None),
 }
 
