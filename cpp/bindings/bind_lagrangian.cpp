@@ -10,6 +10,7 @@ namespace mpsdem::bindings {
 using namespace pybind11::literals;
 using mps::lagrangian::AdvanceReport;
 using mps::lagrangian::Liquid;
+using mps::lagrangian::PushPlate;
 
 namespace {
 
@@ -46,9 +47,46 @@ mps::Pairing pairing_of(const std::string& name) {
     return mps::Pairing::difference;
 }
 
+std::vector<std::array<Real, 2>> pairs(const Array<Real>& draws) {
+    require(draws.ndim() == 2 && draws.shape(1) == 2, "draws must have shape (n, 2)");
+    std::vector<std::array<Real, 2>> out;
+    for (py::ssize_t k = 0; k < draws.shape(0); ++k)
+        out.push_back({draws.at(k, 0), draws.at(k, 1)});
+    return out;
+}
+
 } // namespace
 
 void bind_lagrangian(py::module_ m) {
+    py::class_<PushPlate>(
+        m, "PushPlate",
+        R"(A plate that pushes the liquid into the pipe, and an outlet that lets it go.
+
+The plate works upstream of the pipe, so that the bore is always full: its face moves from
+-(stroke + settling) to -settling and jumps back by the stroke. The gap is filled with a slab of the
+bore's own liquid, shifted and turned. Behind the pipe, over the length of the outlet, the pressure
+is zero and the liquid keeps its velocity.
+
+Parameters
+----------
+velocity : float
+    Of the plate, so of the bulk [m/s], > 0.
+stroke : float
+    [m].
+settling : float
+    Length left between plate and bore, renewed with the gap at each return [m].
+outlet : float
+    Length of the outlet behind the pipe [m].
+draws : (n, 2) float64 ndarray
+    Which slab fills a gap, and how far it is turned: shares in [0, 1), a row for each return, from
+    the first row again when all are used.
+)")
+        .def(py::init([](Real velocity, Real stroke, Real settling, Real outlet,
+                         const Array<Real>& draws) {
+                 return PushPlate{velocity, stroke, settling, outlet, pairs(draws)};
+             }),
+             py::kw_only(), "velocity"_a, "stroke"_a, "settling"_a, "outlet"_a, "draws"_a);
+
     py::class_<AdvanceReport>(m, "LiquidReport", "What a call of LagrangianLiquid.advance met.")
         .def_readonly("substeps", &AdvanceReport::substeps)
         .def_property_readonly(
@@ -76,14 +114,25 @@ void bind_lagrangian(py::module_ m) {
                       "Particles whose neighbors fix no Laplacian: no viscosity acted there.")
         .def_readonly("held_back", &AdvanceReport::held_back,
                       "Particles kept from going nearer to the wall than 0.3 spacings.")
+        .def_readonly("pushed", &AdvanceReport::pushed,
+                      "Particles kept from going nearer to the plate than 0.3 spacings.")
+        .def_readonly("plate_returns", &AdvanceReport::plate_returns, "Returns of the plate.")
+        .def_readonly("entered", &AdvanceReport::entered,
+                      "Particles that came to be behind the plate.")
+        .def_readonly("replaced", &AdvanceReport::replaced,
+                      "Particles between plate and bore that went for them.")
+        .def_readonly("crowded", &AdvanceReport::crowded,
+                      "Particles left out there, nearer than half a spacing to others.")
+        .def_readonly("left", &AdvanceReport::left, "Particles that went through the outlet.")
         .def_property_readonly(
             "solve_seconds", [](const AdvanceReport& r) { return r.solve.seconds; },
             "Time spent in the pressure equation, set-up included [s].")
         .def_readonly("sound", &AdvanceReport::sound,
                       "False when the pressure could not be solved or speeds overflowed.");
 
-    py::class_<Liquid>(m, "LagrangianLiquid",
-                       R"(The particle liquid of a full, straight, periodic pipe.
+    py::class_<Liquid>(
+        m, "LagrangianLiquid",
+        R"(The particle liquid of a full, straight pipe, periodic or with a push plate.
 
 Moving particles, walls of wall and ghost particles, pressure from a Poisson equation. A liquid of
 the mean flow: its stable form damps fluctuations.
@@ -98,6 +147,9 @@ particle_spacing : float
     Of that layout [m].
 pipe_radius, pipe_length : float
     [m].
+plate : PushPlate, optional
+    Without it, the pipe is periodic. With it, the layout is that of `push_plate_layout`, and what
+    lies inside the pipe's radius but is no liquid is the plate.
 density, kinematic_viscosity : float
     [kg/m3], [m2/s].
 roughness : float
@@ -125,26 +177,26 @@ Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
 )")
         .def(py::init([](const Array<Real>& position, const Array<Real>& velocity,
                          const Array<std::int8_t>& kind, Real particle_spacing, Real pipe_radius,
-                         Real pipe_length, Real density, Real kinematic_viscosity, Real roughness,
-                         const Turbulence& turbulence, Real bulk_velocity,
-                         std::optional<Real> pressure_gradient, Real courant, Real tolerance,
-                         const std::string& solver, const std::string& pairing, Real background,
-                         Real shift, Real pressure_limit, int threads) {
+                         Real pipe_length, const std::optional<PushPlate>& plate, Real density,
+                         Real kinematic_viscosity, Real roughness, const Turbulence& turbulence,
+                         Real bulk_velocity, std::optional<Real> pressure_gradient, Real courant,
+                         Real tolerance, const std::string& solver, const std::string& pairing,
+                         Real background, Real shift, Real pressure_limit, int threads) {
                  using namespace mps::lagrangian;
                  return Liquid(vectors(position, "position"), vectors(velocity, "velocity"),
-                               kinds(kind), geometry::Cylinder(pipe_radius, {}), pipe_radius,
-                               pipe_length, density, kinematic_viscosity, roughness,
-                               flow(turbulence), {bulk_velocity, pressure_gradient},
+                               kinds(kind), pipe_radius, pipe_length, plate, density,
+                               kinematic_viscosity, roughness, flow(turbulence),
+                               {bulk_velocity, pressure_gradient},
                                {particle_spacing, courant, tolerance, background, shift,
                                 pairing_of(pairing), pressure_limit, solver_of(solver), threads});
              }),
              py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
-             "pipe_radius"_a, "pipe_length"_a, "density"_a, "kinematic_viscosity"_a, "roughness"_a,
-             "turbulence"_a, "bulk_velocity"_a, "pressure_gradient"_a = py::none(),
-             "courant"_a = 0.8, "tolerance"_a = 1e-3, "solver"_a = "two_level",
-             "pairing"_a = "conserving", "background"_a = 0.02, "shift"_a = 0.25,
-             "pressure_limit"_a = 0.25, "threads"_a = 1)
-        .def("__len__", &Liquid::size)
+             "pipe_radius"_a, "pipe_length"_a, "plate"_a = py::none(), "density"_a,
+             "kinematic_viscosity"_a, "roughness"_a, "turbulence"_a, "bulk_velocity"_a,
+             "pressure_gradient"_a = py::none(), "courant"_a = 0.8, "tolerance"_a = 1e-3,
+             "solver"_a = "two_level", "pairing"_a = "conserving", "background"_a = 0.02,
+             "shift"_a = 0.25, "pressure_limit"_a = 0.25, "threads"_a = 1)
+        .def("__len__", &Liquid::places)
         .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
              "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
         .def(
@@ -165,9 +217,9 @@ pressure_gradient : float, optional
         .def(
             "velocity_at",
             [](const Liquid& liquid, const Array<Real>& points, Real radius) {
-                return array(coupling::sample_velocity(
-                    {radius}, liquid.pipe_length(), liquid.liquid_position(),
-                    liquid.liquid_velocity(), vectors(points, "points")));
+                return array(
+                    coupling::sample_velocity({radius}, liquid.period(), liquid.liquid_position(),
+                                              liquid.liquid_velocity(), vectors(points, "points")));
             },
             py::kw_only(), "points"_a, "radius"_a,
             R"(Liquid velocity at points, averaged with the kernel W_s over a radius.
@@ -185,9 +237,13 @@ Returns
     [m/s]; zero where no liquid is within the radius.
 )")
         .def_property_readonly("liquid_count", &Liquid::liquid_count)
+        .def_property_readonly("count_in_bore", &Liquid::count_in_bore,
+                               "Liquid particles from x = 0 to the pipe's length.")
+        .def_property_readonly("plate_face", &Liquid::plate_face,
+                               "Where the plate meets the liquid [m]; 0 without a plate.")
         .def_property_readonly(
             "position", [](const Liquid& l) { return array(l.position()); },
-            "(n, 3) [m], in the order given.")
+            "(n, 3) [m], in the order given; NaN in a place that no particle holds.")
         .def_property_readonly(
             "velocity", [](const Liquid& l) { return array(l.velocity()); }, "(n, 3) [m/s].")
         .def_property_readonly(
@@ -211,7 +267,8 @@ Returns
             [](const Liquid& l) {
                 const auto s = l.snapshot();
                 return py::dict("position"_a = array(s.position), "velocity"_a = array(s.velocity),
-                                "pressure"_a = array(s.pressure), "id"_a = array(s.id));
+                                "pressure"_a = array(s.pressure), "id"_a = array(s.id),
+                                "ends"_a = array(s.ends));
             },
             "The exact state as arrays, for `restore`.")
         .def(
@@ -221,12 +278,14 @@ Returns
                 const auto velocity = state["velocity"].cast<Array<Real>>();
                 const auto pressure = state["pressure"].cast<Array<Real>>();
                 const auto id = state["id"].cast<Array<Index>>();
+                const auto ends = state["ends"].cast<Array<Real>>();
                 const auto copy = [](auto span) {
                     return std::vector<std::remove_cvref_t<decltype(span[0])>>(span.begin(),
                                                                                span.end());
                 };
                 l.restore({copy(vectors(position, "position")), copy(vectors(velocity, "velocity")),
-                           copy(values(pressure, "pressure")), copy(values(id, "id"))});
+                           copy(values(pressure, "pressure")), copy(values(id, "id")),
+                           copy(values(ends, "ends"))});
             },
             "state"_a, "Continue bit-equal from a `state` of the same liquid.");
 }

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
+#include "mps/facing.hpp"
 #include "mps/moment.hpp"
 #include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
@@ -55,23 +56,24 @@ void slip_divergence(const Wall& wall, const ReferenceDensity& reference, const 
     };
     parallel_for(result.size(), threads, [&](std::size_t i) {
         const auto own = broadcast(velocity[i]), here = broadcast(pairs.position(i));
-        const auto at = wall.at(pairs.position(i));
-        const auto n = broadcast(at.normal);
         Lanes sum{};
         if (pairs.liquid(i)) {
             pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {
                 sum += p.over_square * dot(p.of(velocity) - own, p.r);
             });
             pairs.template fours<Among::solid>(i, [&](const FourPairs& p) {
-                const Lanes k = mirror(-wall.at(here + p.r).distance, Lanes{} + at.distance);
-                sum += p.over_square * k * dot(p.of(velocity) - own, n) * dot(n, p.r);
+                const auto there = here + p.r;
+                const auto at = facing(wall, here, there);
+                const Lanes k = mirror(-facing(wall, there, there).distance, at.distance);
+                sum +=
+                    p.over_square * k * dot(p.of(velocity) - own, at.normal) * dot(at.normal, p.r);
             });
         } else {
             pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {
-                const auto there = wall.at(here + p.r);
-                const Lanes k = mirror(Lanes{} - at.distance, there.distance);
-                sum += p.over_square * k * dot(p.of(velocity) - own, there.normal) *
-                       dot(there.normal, p.r);
+                const auto at = facing(wall, here + p.r, here);
+                const Lanes k = mirror(-facing(wall, here, here).distance, at.distance);
+                sum +=
+                    p.over_square * k * dot(p.of(velocity) - own, at.normal) * dot(at.normal, p.r);
             });
         }
         result[i] = scale * mpsdem::sum(sum);
@@ -96,7 +98,6 @@ void corrected_divergence(const Wall& wall, const ReferenceDensity& reference,
         result[i] = 0;
         if (!pairs.liquid(i)) return;
         const auto own = broadcast(velocity[i]), here = broadcast(pairs.position(i));
-        const Real distance = std::max(wall.at(pairs.position(i)).distance, least);
         Moment<Lanes> moments;
         Vector<Lanes> x, y, z; // sums of each component of the velocity
         const auto add = [&](const FourPairs& p, const Vector<Lanes>& du) {
@@ -109,8 +110,9 @@ void corrected_divergence(const Wall& wall, const ReferenceDensity& reference,
         pairs.template fours<Among::liquid>(
             i, [&](const FourPairs& p) { add(p, p.of(velocity) - own); });
         pairs.template fours<Among::solid>(i, [&](const FourPairs& p) {
-            const Lanes k =
-                mirror_factor(-wall.at(here + p.r).distance, Lanes{} + distance, Lanes{} + least);
+            const auto there = here + p.r;
+            const Lanes k = mirror_factor(-facing(wall, there, there).distance,
+                                          facing(wall, here, there).distance, Lanes{} + least);
             add(p, k * (p.of(velocity) - own));
         });
         const Moment<Real> moment = sum(moments);

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
+#include "mps/facing.hpp"
 #include "mps/moment.hpp"
 #include "mps/pairs.hpp"
 #include "mps/reference_density.hpp"
@@ -73,9 +74,9 @@ enum class Pairing {
 ///
 /// Among walls and ghosts as among liquid. The background p_b [Pa] spreads the particles evenly;
 /// along the wall it would drag. 0.02 rho U^2 holds the scatter of the density near 0.02; p_b must
-/// stay below 0.2 rho (dx/dt)^2. n is the wall's at particle i. The conserving form blows up in
-/// long pipes unless the source of the pressure is freed of its axial bias; then it held in 4 m for
-/// 20 s, with a fortieth of the momentum that the difference leaves unexplained.
+/// stay below 0.2 rho (dx/dt)^2. n is that of j's wall at particle i. The conserving form blows up
+/// in long pipes unless the source of the pressure is freed of its axial bias; then it held in 4 m
+/// for 20 s, with a fortieth of the momentum that the difference leaves unexplained.
 template <geometry::Surface Wall>
 void background_gradient(Pairing pairing, Real background, const Wall& wall,
                          const ReferenceDensity& reference, const Pairs auto& pairs,
@@ -88,15 +89,13 @@ void background_gradient(Pairing pairing, Real background, const Wall& wall,
             return p.over_square * (p.of(pressure) - own);
         };
         Vector<Lanes> sum;
-        Lanes push{}; // along the normal
-        const Vec3 normal = wall.at(pairs.position(i)).normal;
-        const auto n = broadcast(normal);
+        const auto here = broadcast(pairs.position(i));
         const auto alike = [&](const FourPairs& p) {
             sum += (difference(p) + twice * p.over_square) * p.r;
         };
         const auto unlike = [&](const FourPairs& p) {
-            sum += difference(p) * p.r;
-            push += twice * p.over_square * dot(p.r, n);
+            const auto n = facing(wall, here, here + p.r).normal;
+            sum += difference(p) * p.r + (twice * p.over_square * dot(p.r, n)) * n;
         };
         if (pairs.liquid(i)) {
             pairs.template fours<Among::liquid>(i, alike);
@@ -105,7 +104,7 @@ void background_gradient(Pairing pairing, Real background, const Wall& wall,
             pairs.template fours<Among::liquid>(i, unlike);
             pairs.template fours<Among::solid>(i, alike);
         }
-        result[i] = scale * (mpsdem::sum(sum) + mpsdem::sum(push) * normal);
+        result[i] = scale * mpsdem::sum(sum);
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "geometry/surface.hpp"
+#include "mps/facing.hpp"
 #include "mps/kind.hpp"
 #include "neighbors/neighbor_list.hpp"
 
@@ -39,7 +40,7 @@ void least_squares_laplacian(const Wall& wall, const neighbors::NeighborList& ne
         neighbors.each(i, [&](Index j, Vec3 r, Index) {
             if (kind[j] == Kind::ghost) return;
             if (kind[j] == Kind::wall) {
-                const auto at = wall.at(neighbors.position(j));
+                const auto at = facing(wall, neighbors.position(j), neighbors.position(j));
                 r -= at.distance * at.normal;
             }
             const Vec3 q = scale * r;

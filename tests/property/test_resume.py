@@ -51,6 +51,9 @@ CASES = {
     "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),
     "eulerian": case(liquid=WATER | {"model": "eulerian"}),
     "clear liquid, eulerian": case(liquid=WATER | {"model": "eulerian"}).with_(solids=None),
+    "push plate": case(liquid=WATER | {"model": "lagrangian"}).with_(
+        pipe={"ends": "push-plate", "stroke": 0.05}
+    ),
     "clear liquid, lagrangian": case(liquid=WATER | {"model": "lagrangian"}).with_(solids=None),
 }
 

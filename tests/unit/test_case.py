@@ -96,7 +96,7 @@ def problems(case, *settings, **changes):
             "liquid.model=spectral",
             "liquid.model = 'spectral': must be 'auto', 'profile', 'eulerian' or 'lagrangian'",
         ),
-        ("pipe.ends=open", "pipe.ends = 'open': must be 'periodic'"),
+        ("pipe.ends=open", "pipe.ends = 'open': must be 'periodic' or 'push-plate'"),
         ("liquid=3", "liquid = 3: must be a table of keys"),
         ("output.figures=1", "output.figures = 1: must be a valid boolean"),
         # zero solids

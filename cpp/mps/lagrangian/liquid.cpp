@@ -24,6 +24,12 @@ constexpr Real longest_shift = 0.1; // [-] spacings that a particle may be shift
 constexpr Real viscous_limit = 0.1; // [-] largest nu dt / dx^2
 constexpr Real most_substeps = 1e4; // [-] of one call; beyond it the speeds have run away
 constexpr int most_halvings = 5;    // [-] of one call
+constexpr Real spare_places = 0.05; // [-] of the liquid, for what a plate brings in
+// [-] of a section's difference from the plate's velocity, made good in a step: the disorder of the
+// particles that come and go is not followed, and a lasting difference does not build up
+constexpr Real flux_feedback = 0.3;
+constexpr Real outlet_hold = 100; // [-] Dirichlet part over n0: p' is held to zero within a percent
+constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
 /// Put the first order.size() values in an order.
 template <class T>
@@ -35,10 +41,25 @@ void reorder(std::vector<T>& values, std::span<const Index> order, int threads,
 }
 
 template <class T>
-std::vector<T> in_given_order(std::span<const T> values, std::span<const Index> id) {
-    std::vector<T> out(id.size());
+std::vector<T> in_given_order(std::span<const T> values, std::span<const Index> id,
+                              std::size_t places, const T& vacant) {
+    std::vector<T> out(places, vacant);
     for (std::size_t i = 0; i < values.size(); ++i) out[id[i]] = values[i];
     return out;
+}
+
+void require_drive(const Ends& ends, const Drive& drive) {
+    require(ends.periodic() ||
+                (!drive.pressure_gradient && drive.bulk_velocity == ends.plate_velocity()),
+            "Liquid: a plate drives the liquid: bulk_velocity must be the plate's, and no "
+            "pressure_gradient be given");
+}
+
+Ends ends_of(Real pipe_length, const std::optional<PushPlate>& plate, std::span<const Kind> kind) {
+    if (!plate) return Ends(pipe_length);
+    const Real length = plate->stroke + plate->settling + pipe_length + plate->outlet;
+    return {pipe_length, *plate,
+            static_cast<Real>(std::ranges::count(kind, Kind::liquid)) / length};
 }
 
 } // namespace
@@ -50,20 +71,34 @@ std::size_t Liquid::count_liquid(const Holds& holds) const {
                                                 [&](std::size_t i) { return holds(i) ? 1. : 0.; }));
 }
 
+/// Mean over the liquid that is in the bore.
+template <class Value>
+Real Liquid::mean_in_bore(const Value& value) const {
+    const auto sum_of = [&](const auto& term) {
+        return ordered_sum(liquid_count_, numerics_.threads, [&](std::size_t i) {
+            return ends_.in_bore(position_[i]) ? term(i) : Real{0};
+        });
+    };
+    return sum_of(value) / sum_of([](std::size_t) { return Real{1}; });
+}
+
 Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
-               std::span<const Kind> kind, const geometry::Cylinder& wall, Real pipe_radius,
-               Real pipe_length, Real density, Real kinematic_viscosity, Real roughness, Flow flow,
-               const Drive& drive, const Numerics& numerics)
-    : wall_(wall), pipe_radius_(pipe_radius), pipe_length_(pipe_length), density_(density),
-      viscosity_(kinematic_viscosity), flow_(flow), drive_(drive), numerics_(numerics),
+               std::span<const Kind> kind, Real pipe_radius, Real pipe_length,
+               const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
+               Real roughness, Flow flow, const Drive& drive, const Numerics& numerics)
+    : ends_(ends_of(pipe_length, plate, kind)),
+      wall_(pipe_radius, plate ? ends_.face() : Bore::no_plate), pipe_radius_(pipe_radius),
+      pipe_length_(pipe_length), density_(density), viscosity_(kinematic_viscosity), flow_(flow),
+      drive_(drive), numerics_(numerics),
       reference_(numerics.particle_spacing, reach * numerics.particle_spacing),
-      wall_function_(kinematic_viscosity, roughness), pairs_(reference_.weight, pipe_length),
-      cells_(position, reference_.weight.effective_radius, pipe_length, numerics.threads),
-      grid_(reference_.weight.effective_radius, pipe_length),
+      wall_function_(kinematic_viscosity, roughness), pairs_(reference_.weight, ends_.period()),
+      cells_(position, reference_.weight.effective_radius, ends_.period(), numerics.threads),
+      grid_(reference_.weight.effective_radius, ends_.period()),
       pressure_equation_(numerics.solver, numerics.tolerance, numerics.particle_spacing,
                          numerics.threads) {
     require(position.size() == velocity.size() && position.size() == kind.size(),
             "Liquid: position, velocity and kind must have the same length");
+    require_drive(ends_, drive);
     require(density > 0, "Liquid: density must be > 0 kg/m3");
     require(numerics.courant > 0, "Liquid: courant must be > 0");
     require(numerics.tolerance > 0, "Liquid: tolerance must be > 0");
@@ -87,20 +122,28 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
             kind_.push_back(k);
         }
     }
+    places_ = size();
+    if (plate)
+        places_ += static_cast<std::size_t>(spare_places * static_cast<Real>(liquid_count_)) + 1;
+    for (std::size_t i = liquid_count_; i < size(); ++i) {
+        if (!ends_.periodic() && wall_.of_plate(position_[i]))
+            velocity_[i] = {plate->velocity, 0, 0};
+    }
     pressure_.assign(size(), 0);
     find_pairs();
-    pressure_equation_.assemble(pairs_, {});
+    find_known();
+    pressure_equation_.assemble(pairs_, known_);
     pressure_equation_.prepare();
 
-    // Ghosts lie still behind the wall, and so do their shares.
-    neighbors::NeighborList behind(reference_.weight.effective_radius, pipe_length);
+    // Ghosts keep their places behind the wall, and so do their shares.
+    neighbors::NeighborList behind(reference_.weight.effective_radius, ends_.period());
     behind.find(std::span<const Vec3>(position_).subspan(liquid_count_), 1);
     behind_first_.push_back(0);
     for (std::size_t g = wall_count_; g < behind.rows(); ++g) {
         Real total = 0;
         behind.each(g, [&](Index w, const Vec3& r, Index) {
             if (w >= wall_count_) return;
-            behind_column_.push_back(static_cast<Index>(liquid_count_) + w);
+            behind_column_.push_back(w);
             behind_share_.push_back(reference_.weight(norm(r)));
             total += behind_share_.back();
         });
@@ -108,6 +151,11 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
             behind_share_[k] /= total;
         behind_first_.push_back(static_cast<Index>(behind_column_.size()));
     }
+}
+
+void Liquid::drive(const Drive& drive) {
+    require_drive(ends_, drive);
+    drive_ = drive;
 }
 
 AdvanceReport Liquid::advance(Real dt) {
@@ -158,14 +206,16 @@ bool Liquid::step(Real dt, AdvanceReport& report) {
     find_pairs();
     velocity_before_ = velocity_;
     const Real before = bulk_velocity();
+    const AxialBins bins_before = axial_velocity();
     predict(dt, report);
     friction_ = density_ * (before - bulk_velocity()) / dt;
     if (!solve_pressure(dt, report)) {
         velocity_ = velocity_before_;
         return false;
     }
-    correct(dt);
+    correct(dt, bins_before);
     move(dt, report);
+    if (!ends_.periodic()) move_plate(dt, report);
     return true;
 }
 
@@ -179,10 +229,12 @@ void Liquid::sort() {
     reorder(id_, order_, threads, id_memory_);
 }
 
+neighbors::Groups Liquid::groups() const {
+    return {{liquid_count_, wall_count_, solids() - wall_count_}, liquid_count_ + wall_count_};
+}
+
 void Liquid::find_pairs() {
-    const std::size_t ghosts = size() - liquid_count_ - wall_count_;
-    pairs_.find(position_, {{liquid_count_, wall_count_, ghosts}, liquid_count_ + wall_count_},
-                numerics_.threads);
+    pairs_.find(position_, groups(), numerics_.threads);
 }
 
 /// Viscosity and wall shear, on the liquid.
@@ -200,9 +252,22 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
             wall_, pairs_.neighbors(), kind_, velocity_, threads, acceleration_, deficient_);
         report.deficient += static_cast<std::size_t>(std::ranges::count(deficient_, 1));
         for (Vec3& a : acceleration_) a = viscosity_ * a;
+        if (!ends_.periodic()) smooth_beside_plate();
     }
-    parallel_for(liquid_count_, threads,
-                 [&](std::size_t i) { velocity_[i] += dt * acceleration_[i]; });
+    parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        if (moves(i)) velocity_[i] += dt * acceleration_[i];
+    });
+}
+
+/// Within a radius of the plate, where liquid is pressed together and turned round, polynomials
+/// through the neighbors lose their hold: there only the pairwise sum, which can but smooth.
+void Liquid::smooth_beside_plate() {
+    eddy_viscosity_.assign(liquid_count_, viscosity_);
+    shift_.resize(liquid_count_);
+    viscous_acceleration(reference_, pairs_, eddy_viscosity_, velocity_, numerics_.threads, shift_);
+    const Real end = ends_.face() + pipe_radius_;
+    for (std::size_t i = 0; i < liquid_count_; ++i)
+        if (position_[i].x < end) acceleration_[i] = shift_[i];
 }
 
 void Liquid::find_eddy_viscosity(Real dt, AdvanceReport& report) {
@@ -233,14 +298,15 @@ void Liquid::add_wall_shear() {
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
         const Real distance = wall_.at(position_[i]).distance;
         scalar_[i] = outside_the_layer;
-        if (distance >= dx) return;
+        if (distance >= dx || !moves(i)) return;
         const Real speed = norm(velocity_[i]);
         const Real y = std::max(distance, nearest_liquid * dx);
         scalar_[i] = speed == 0 ? 0 : wall_function_.shear(speed, y) / speed; // [1/s m]
     });
-    std::size_t layer = 0;
+    std::size_t layer = 0, liquid = 0;
     Real sum = 0; // of shear over density
     for (std::size_t i = 0; i < liquid_count_; ++i) {
+        liquid += moves(i) ? 1 : 0;
         if (scalar_[i] == outside_the_layer) continue;
         ++layer;
         sum += scalar_[i] * velocity_[i].x;
@@ -248,7 +314,7 @@ void Liquid::add_wall_shear() {
     if (layer == 0) return;
     const auto count = static_cast<Real>(layer);
     // wall area over the layer's volume: 2 pi R L / (count pi R^2 L / liquid)
-    const Real per_volume = 2 * static_cast<Real>(liquid_count_) / (pipe_radius_ * count);
+    const Real per_volume = 2 * static_cast<Real>(liquid) / (pipe_radius_ * count);
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
         if (scalar_[i] != outside_the_layer)
             acceleration_[i] -= (per_volume * scalar_[i]) * velocity_[i];
@@ -269,12 +335,13 @@ bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     const Real scale =
         -density_ / dt * reference_.number_density * reference_.lambda / (2 * dimensions);
     parallel_for(unknowns, threads, [&](std::size_t i) {
-        right_hand_side_[i] = i < liquid_count_ ? scale * right_hand_side_[i] : 0;
+        right_hand_side_[i] = moves(i) ? scale * right_hand_side_[i] : 0;
     });
     remove_axial_bias();
     pressure_before_.assign(pressure_.begin(),
                             pressure_.begin() + static_cast<std::ptrdiff_t>(unknowns));
-    pressure_equation_.assemble(pairs_, {});
+    find_known();
+    pressure_equation_.assemble(pairs_, known_);
     if (!pressure_equation_.solve(right_hand_side_, std::span(pressure_).first(unknowns),
                                   report.solve)) {
         std::ranges::copy(pressure_before_, pressure_.begin());
@@ -285,30 +352,29 @@ bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     return true;
 }
 
+/// Behind the outlet p' is held to zero.
+void Liquid::find_known() {
+    known_.clear();
+    if (ends_.periodic()) return;
+    known_.assign(pairs_.rows(), 0);
+    for (std::size_t i = 0; i < pairs_.rows(); ++i)
+        if (!ends_.inside(position_[i])) known_[i] = outlet_hold * reference_.number_density;
+}
+
 /// The disorder of the particles leaves in the source a random axial wave, which the solve would
 /// amplify with the length of the pipe. In a full rigid pipe the flux through every section is the
-/// same: the source's mean over each diameter of length is zero, and is made so.
+/// same, and a plate's too: the source's mean over each diameter of length is zero, and is made so.
 void Liquid::remove_axial_bias() {
-    const auto bins = std::max<std::size_t>(
-        1, static_cast<std::size_t>(std::lround(pipe_length_ / (2 * pipe_radius_))));
-    const Real width = pipe_length_ / static_cast<Real>(bins);
-    std::vector<Real> sum(bins), count(bins);
-    for (std::size_t i = 0; i < liquid_count_; ++i) {
-        const auto b = std::min(static_cast<std::size_t>(pairs_.position(i).x / width), bins - 1);
-        sum[b] += right_hand_side_[i];
-        count[b] += 1;
-    }
-    for (std::size_t b = 0; b < bins; ++b) sum[b] /= std::max(count[b], 1.);
+    AxialBins bias = ends_.bins(2 * pipe_radius_);
+    for (std::size_t i = 0; i < liquid_count_; ++i)
+        if (moves(i)) bias.add(pairs_.position(i).x, right_hand_side_[i]);
+    bias.take_means();
     parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
-        const Real place = pairs_.position(i).x / width - 0.5;
-        const Real below = std::floor(place);
-        const auto b = static_cast<std::size_t>(below + static_cast<Real>(bins)) % bins;
-        const Real share = place - below;
-        right_hand_side_[i] -= (1 - share) * sum[b] + share * sum[(b + 1) % bins];
+        if (moves(i)) right_hand_side_[i] -= bias.at(pairs_.position(i).x);
     });
 }
 
-/// Give p' mean zero in the liquid, and cut it to the limit.
+/// Cut p' to the limit about its mean in the liquid, which is zero where nothing holds it.
 void Liquid::cut_pressure(AdvanceReport& report) {
     const int threads = numerics_.threads;
     const auto count = static_cast<Real>(liquid_count_);
@@ -319,8 +385,9 @@ void Liquid::cut_pressure(AdvanceReport& report) {
                            : std::numeric_limits<Real>::infinity();
     report.clamped +=
         count_liquid([&](std::size_t i) { return std::abs(pressure_[i] - mean) > limit; });
+    const Real level = ends_.periodic() ? 0 : mean;
     parallel_for(pairs_.rows(), threads, [&](std::size_t i) {
-        pressure_[i] = std::clamp(pressure_[i] - mean, -limit, limit);
+        pressure_[i] = level + std::clamp(pressure_[i] - mean, -limit, limit);
     });
     pressure_noise_ = std::sqrt(ordered_sum(liquid_count_, threads,
                                             [&](std::size_t i) {
@@ -337,25 +404,65 @@ void Liquid::extrapolate_pressure() {
     parallel_for(size() - first_ghost, numerics_.threads, [&](std::size_t g) {
         Real sum = 0;
         for (Index k = behind_first_[g]; k < behind_first_[g + 1]; ++k)
-            sum += behind_share_[k] * pressure_[behind_column_[k]];
+            sum += behind_share_[k] * pressure_[liquid_count_ + behind_column_[k]];
         pressure_[first_ghost + g] = sum;
     });
 }
 
-/// Gradient of p', then the mean axial gradient: given, or what holds the bulk velocity.
-void Liquid::correct(Real dt) {
-    const int threads = numerics_.threads;
+/// Gradient of p', then what drives the liquid along the pipe.
+void Liquid::correct(Real dt, const AxialBins& before) {
     background_gradient(numerics_.pairing, numerics_.background * dynamic_pressure(), wall_,
-                        reference_, pairs_, pressure_, threads, acceleration_);
-    const Real before = bulk_velocity();
-    parallel_for(liquid_count_, threads,
-                 [&](std::size_t i) { velocity_[i] -= (dt / density_) * acceleration_[i]; });
+                        reference_, pairs_, pressure_, numerics_.threads, acceleration_);
     const Real bulk = bulk_velocity();
-    unexplained_ = density_ * (bulk - before) / dt;
+    parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
+        if (moves(i)) velocity_[i] -= (dt / density_) * acceleration_[i];
+    });
+    unexplained_ = density_ * (bulk_velocity() - bulk) / dt;
+    if (ends_.periodic())
+        hold_bulk_velocity(dt);
+    else
+        hold_flux_of_plate(dt, before);
+}
+
+/// The mean axial gradient: given, or what holds the bulk velocity.
+void Liquid::hold_bulk_velocity(Real dt) {
     gradient_ = drive_.pressure_gradient ? *drive_.pressure_gradient
-                                         : density_ * (drive_.bulk_velocity - bulk) / dt;
+                                         : density_ * (drive_.bulk_velocity - bulk_velocity()) / dt;
     const Real kick = dt * gradient_ / density_;
-    parallel_for(liquid_count_, threads, [&](std::size_t i) { velocity_[i].x += kick; });
+    parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) { velocity_[i].x += kick; });
+}
+
+/// The axial gradient that gives each section back what it lost in this step, and brings it nearer
+/// to the plate's velocity. The loss of pressure along the bore is its mean and what p' falls.
+void Liquid::hold_flux_of_plate(Real dt, const AxialBins& before) {
+    const AxialBins after = axial_velocity();
+    const Real aim = ends_.plate_velocity();
+    scalar_.resize(liquid_count_);
+    parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
+        scalar_[i] = 0;
+        if (!moves(i)) return;
+        const Real was = before.at(position_[i].x);
+        scalar_[i] = was - after.at(position_[i].x) + flux_feedback * (aim - was);
+        velocity_[i].x += scalar_[i];
+    });
+    const Real kick = mean_in_bore([&](std::size_t i) { return scalar_[i]; });
+    const Real middle = mean_in_bore([&](std::size_t i) { return position_[i].x; });
+    const Real level = mean_in_bore([&](std::size_t i) { return pressure_[i]; });
+    const Real together = mean_in_bore(
+        [&](std::size_t i) { return (position_[i].x - middle) * (pressure_[i] - level); });
+    const Real spread = mean_in_bore(
+        [&](std::size_t i) { return (position_[i].x - middle) * (position_[i].x - middle); });
+    gradient_ = density_ * kick / dt - together / spread;
+}
+
+/// Mean axial velocity of each diameter of length, where a plate has to hold it.
+AxialBins Liquid::axial_velocity() const {
+    AxialBins bins = ends_.bins(2 * pipe_radius_);
+    if (ends_.periodic()) return bins;
+    for (std::size_t i = 0; i < liquid_count_; ++i)
+        if (moves(i)) bins.add(position_[i].x, velocity_[i].x);
+    bins.take_means();
+    return bins;
 }
 
 /// Move with the velocity, and shift towards where particles are few. The shift goes with the way
@@ -367,6 +474,10 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     const Real way = fastest() * dt / dx;
     shift_.resize(liquid_count_);
     shifting(numerics_.shift * way, reference_, pairs_, numerics_.threads, shift_);
+    if (!ends_.periodic()) {
+        for (std::size_t i = 0; i < liquid_count_; ++i)
+            if (!moves(i)) shift_[i] = {};
+    }
     report.shifts_cut += count_liquid([&](std::size_t i) {
         const Real length = norm(shift_[i]);
         if (length > longest) shift_[i] = (longest / length) * shift_[i];
@@ -382,8 +493,11 @@ void Liquid::move(Real dt, AdvanceReport& report) {
             x.y *= inwards;
             x.z *= inwards;
         }
-        x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
-        position_[i] = x.x < pipe_length_ ? x : Vec3{0, x.y, x.z};
+        if (ends_.periodic()) {
+            x.x -= std::floor(x.x / pipe_length_) * pipe_length_;
+            if (x.x >= pipe_length_) x.x = 0; // rounded up from just below zero
+        }
+        position_[i] = x;
         return beyond;
     });
     const std::size_t lost = count_liquid([&](std::size_t i) {
@@ -392,58 +506,155 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     report.sound = report.sound && lost == 0;
 }
 
+/// The plate goes on, ahead of the liquid next to it, and at the end of its stroke jumps back; what
+/// has passed the outlet is dropped.
+void Liquid::move_plate(Real dt, AdvanceReport& report) {
+    const auto carry = [&](Real distance) {
+        for (std::size_t i = liquid_count_; i < size(); ++i)
+            if (wall_.of_plate(position_[i])) position_[i].x += distance;
+    };
+    const Real from = ends_.face();
+    ends_.advance(dt);
+    carry(ends_.face() - from);
+    const Real nearest = ends_.face() + nearest_liquid * numerics_.particle_spacing;
+    std::vector<std::uint8_t> kept(liquid_count_, 1);
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
+        if (position_[i].x < nearest) {
+            position_[i].x = nearest;
+            velocity_[i].x = std::max(velocity_[i].x, ends_.plate_velocity());
+            ++report.pushed;
+        }
+        if (ends_.beyond(position_[i])) {
+            kept[i] = 0;
+            ++report.left;
+        }
+    }
+    keep(kept);
+    if (ends_.stroke_done()) {
+        const Real seam = ends_.seam(), face = ends_.face();
+        kept.assign(liquid_count_, 1);
+        for (std::size_t i = 0; i < liquid_count_; ++i) {
+            if (position_[i].x < seam) {
+                kept[i] = 0;
+                ++report.replaced;
+            }
+        }
+        keep(kept);
+        const Refill refill = ends_.jump_back(position_, velocity_, pressure_, kind_,
+                                              places_ - size(), numerics_.particle_spacing);
+        carry(ends_.face() - face);
+        enter(refill.entrants);
+        ++report.plate_returns;
+        report.entered += refill.entrants.size();
+        report.crowded += refill.crowded;
+    }
+    wall_.place_plate(ends_.face());
+}
+
+/// Drop the liquid that is not to be kept.
+void Liquid::keep(const std::vector<std::uint8_t>& kept) {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
+        if (kept[i] == 0) continue;
+        position_[next] = position_[i];
+        velocity_[next] = velocity_[i];
+        pressure_[next] = pressure_[i];
+        id_[next++] = id_[i];
+    }
+    resize_liquid(next);
+}
+
+/// New liquid, in the first places that are free.
+void Liquid::enter(std::span<const Entrant> entrants) {
+    std::vector<std::uint8_t> taken(places_, 0);
+    for (const Index id : id_) taken[id] = 1;
+    std::size_t at = liquid_count_;
+    resize_liquid(liquid_count_ + entrants.size());
+    Index place = 0;
+    for (const Entrant& entrant : entrants) {
+        while (taken[place] != 0) ++place;
+        position_[at] = entrant.position;
+        velocity_[at] = entrant.velocity;
+        pressure_[at] = entrant.pressure;
+        id_[at++] = place++;
+    }
+}
+
+/// Make room before the walls, or close it.
+void Liquid::resize_liquid(std::size_t count) {
+    const auto resize = [&]<class T>(std::vector<T>& values, const T& value) {
+        const auto end = values.begin() + static_cast<std::ptrdiff_t>(liquid_count_);
+        if (count < liquid_count_)
+            values.erase(values.begin() + static_cast<std::ptrdiff_t>(count), end);
+        else
+            values.insert(end, count - liquid_count_, value);
+    };
+    resize(position_, Vec3{});
+    resize(velocity_, Vec3{});
+    resize(pressure_, Real{0});
+    resize(id_, Index{0});
+    resize(kind_, Kind::liquid);
+    liquid_count_ = count;
+}
+
 std::vector<Vec3> Liquid::position() const {
-    return in_given_order<Vec3>(position_, id_);
+    return in_given_order<Vec3>(position_, id_, places_, {nan, nan, nan});
 }
 std::vector<Vec3> Liquid::velocity() const {
-    return in_given_order<Vec3>(velocity_, id_);
+    return in_given_order<Vec3>(velocity_, id_, places_, {nan, nan, nan});
 }
 std::vector<Kind> Liquid::kind() const {
-    return in_given_order<Kind>(kind_, id_);
+    return in_given_order<Kind>(kind_, id_, places_, Kind::liquid);
 }
 std::vector<Real> Liquid::pressure() const {
-    return in_given_order<Real>(pressure_, id_);
+    return in_given_order<Real>(pressure_, id_, places_, nan);
+}
+
+std::size_t Liquid::count_in_bore() const {
+    return count_liquid([&](std::size_t i) { return ends_.in_bore(position_[i]); });
 }
 
 Real Liquid::bulk_velocity() const {
-    return ordered_sum(liquid_count_, numerics_.threads,
-                       [&](std::size_t i) { return velocity_[i].x; }) /
-           static_cast<Real>(liquid_count_);
+    return mean_in_bore([&](std::size_t i) { return velocity_[i].x; });
 }
 
 Real Liquid::kinetic_energy() const {
-    return ordered_sum(liquid_count_, numerics_.threads,
-                       [&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; }) /
-           static_cast<Real>(liquid_count_);
+    return mean_in_bore([&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; });
+}
+
+/// Number density over its mean in the liquid, of liquid and wall as they are now.
+std::vector<Real> Liquid::number_ratio() const {
+    StoredPairs now(reference_.weight, ends_.period());
+    now.find(position_, groups(), numerics_.threads);
+    std::vector<Real> ratio(now.rows());
+    number_density(now, numerics_.threads, ratio);
+    const Real mean = mean_in_bore([&](std::size_t i) { return ratio[i]; });
+    for (Real& r : ratio) r /= mean;
+    return ratio;
 }
 
 std::vector<Real> Liquid::density_ratio() const {
-    std::vector<Real> ratio(pairs_.rows());
-    number_density(pairs_, numerics_.threads, ratio);
-    const auto last = ratio.begin() + static_cast<std::ptrdiff_t>(liquid_count_);
-    const Real mean =
-        std::accumulate(ratio.begin(), last, Real{0}) / static_cast<Real>(liquid_count_);
-    for (Real& r : ratio) r /= mean;
-    return in_given_order<Real>(ratio, id_);
+    return in_given_order<Real>(number_ratio(), id_, places_, nan);
 }
 
 Real Liquid::density_scatter() const {
-    const std::vector<Real> ratio = density_ratio();
-    Real sum = 0;
-    for (std::size_t i = 0; i < liquid_count_; ++i)
-        sum += (ratio[id_[i]] - 1) * (ratio[id_[i]] - 1);
-    return std::sqrt(sum / static_cast<Real>(liquid_count_));
+    const std::vector<Real> ratio = number_ratio();
+    return std::sqrt(mean_in_bore([&](std::size_t i) { return (ratio[i] - 1) * (ratio[i] - 1); }));
 }
 
 void Liquid::restore(const Snapshot& s) {
-    require(s.position.size() == size() && s.velocity.size() == size() &&
-                s.pressure.size() == size() && s.id.size() == size(),
+    const std::size_t n = s.position.size();
+    const bool alike = ends_.periodic() ? n == size() : n <= places_ && n > solids();
+    require(alike && s.velocity.size() == n && s.pressure.size() == n && s.id.size() == n &&
+                std::ranges::all_of(s.id, [&](Index id) { return id < places_; }),
             "restore: the snapshot belongs to another liquid");
+    resize_liquid(n - solids());
+    ends_.restore(s.ends);
+    if (!ends_.periodic()) wall_.place_plate(ends_.face());
     position_ = s.position;
     velocity_ = s.velocity;
     pressure_ = s.pressure;
     id_ = s.id;
-    find_pairs();
 }
 
 } // namespace mpsdem::mps::lagrangian

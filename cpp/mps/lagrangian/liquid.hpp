@@ -1,8 +1,9 @@
 #pragma once
 
-#include "geometry/cylinder.hpp"
 #include "mps/gradient.hpp"
 #include "mps/kind.hpp"
+#include "mps/lagrangian/bore.hpp"
+#include "mps/lagrangian/ends.hpp"
 #include "mps/lagrangian/pressure_equation.hpp"
 #include "mps/reference_density.hpp"
 #include "mps/turbulence.hpp"
@@ -54,10 +55,17 @@ struct AdvanceReport {
     std::size_t shifts_cut = 0;       // shifts cut to their longest
     std::size_t deficient = 0;        // particles whose neighbors fix no Laplacian: no viscosity
     std::size_t held_back = 0; // particles kept from going nearer to the wall than 0.3 spacings
-    bool sound = true;         // false: the pressure could not be solved, or speeds overflowed
+    std::size_t pushed = 0;    // the same before the plate, which pushes them
+    std::size_t plate_returns = 0;
+    std::size_t entered = 0;  // particles that came to be behind it
+    std::size_t replaced = 0; // particles between plate and bore that went for them
+    std::size_t crowded = 0;  // particles left out there, too near to others
+    std::size_t left = 0;     // particles that went through the outlet
+    bool sound = true;        // false: the pressure could not be solved, or speeds overflowed
 };
 
-/// The particle liquid of a full, straight, rigid, periodic pipe: MPS proper.
+/// The particle liquid of a full, straight, rigid pipe: MPS proper. The pipe is periodic, or a
+/// plate pushes the liquid through it.
 ///
 /// A step finds the neighbors once and takes every operator there:
 ///
@@ -68,6 +76,8 @@ struct AdvanceReport {
 ///
 /// p' is what is left of the pressure when every uniform acceleration and the mean axial gradient G
 /// are split off: in a full rigid pipe these move nothing, so gravity does not enter at all.
+/// Between a plate and an outlet the flux through every section is the plate's: G, a function of x,
+/// holds the mean velocity of each diameter of length to it, and p' is 0 behind the outlet.
 /// Stable where it was measured, but dissipative: disturbances lose most of their energy within
 /// fifteen radii. It is a liquid of the mean flow, not of its eddies.
 ///
@@ -76,16 +86,17 @@ struct AdvanceReport {
 class Liquid {
 public:
     /// Particles as `ring_layout` or `lattice_layout` places them; velocity of the walls is zero.
+    /// With a plate, as `push_plate_layout` does: wall and ghosts inside the pipe's radius are it.
     Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
-           std::span<const Kind> kind, const geometry::Cylinder& wall, Real pipe_radius,
-           Real pipe_length, Real density, Real kinematic_viscosity, Real roughness, Flow flow,
-           const Drive& drive, const Numerics& numerics);
+           std::span<const Kind> kind, Real pipe_radius, Real pipe_length,
+           const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
+           Real roughness, Flow flow, const Drive& drive, const Numerics& numerics);
 
     /// Advance by dt [s], in as many equal substeps as the Courant number and viscosity ask for.
     AdvanceReport advance(Real dt);
 
-    /// Drive the liquid otherwise from now on.
-    void drive(const Drive& drive) { drive_ = drive; }
+    /// Drive the liquid otherwise from now on. A plate drives it alone.
+    void drive(const Drive& drive);
 
     /// The liquid's own particles, without wall and ghosts, in one order.
     [[nodiscard]] std::span<const Vec3> liquid_position() const noexcept { // [m]
@@ -94,10 +105,14 @@ public:
     [[nodiscard]] std::span<const Vec3> liquid_velocity() const noexcept { // [m/s]
         return std::span(velocity_).first(liquid_count_);
     }
-    [[nodiscard]] Real pipe_length() const noexcept { return pipe_length_; }
+    [[nodiscard]] Real period() const noexcept { return ends_.period(); } // [m] 0: none
 
-    [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
+    /// Particles there may be: each has its place in the arrays below, in the order they were
+    /// given. A place that no particle holds at the moment is liquid, with NaN for a position.
+    [[nodiscard]] std::size_t places() const noexcept { return places_; }
     [[nodiscard]] std::size_t liquid_count() const noexcept { return liquid_count_; }
+    [[nodiscard]] std::size_t count_in_bore() const;
+    [[nodiscard]] Real plate_face() const noexcept { return ends_.face(); } // [m]
     [[nodiscard]] std::vector<Vec3> position() const; // [m] in the order they were given
     [[nodiscard]] std::vector<Vec3> velocity() const; // [m/s]
     [[nodiscard]] std::vector<Kind> kind() const;
@@ -117,8 +132,11 @@ public:
         std::vector<Vec3> position, velocity;
         std::vector<Real> pressure;
         std::vector<Index> id;
+        std::vector<Real> ends;
     };
-    [[nodiscard]] Snapshot snapshot() const { return {position_, velocity_, pressure_, id_}; }
+    [[nodiscard]] Snapshot snapshot() const {
+        return {position_, velocity_, pressure_, id_, ends_.state()};
+    }
     void restore(const Snapshot& snapshot);
 
 private:
@@ -126,24 +144,44 @@ private:
         return !std::holds_alternative<Laminar>(flow_);
     }
     [[nodiscard]] Real dynamic_pressure() const noexcept; // [Pa] rho U^2
+    [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
+    [[nodiscard]] std::size_t solids() const noexcept { return size() - liquid_count_; }
+    /// Whether a particle is liquid that its forces move.
+    [[nodiscard]] bool moves(std::size_t i) const noexcept {
+        return i < liquid_count_ && ends_.inside(position_[i]);
+    }
+    template <class Value>
+    [[nodiscard]] Real mean_in_bore(const Value& value) const;
+    [[nodiscard]] AxialBins axial_velocity() const;
     template <class Holds>
     [[nodiscard]] std::size_t count_liquid(const Holds& holds) const;
     [[nodiscard]] Real fastest() const; // [m/s]
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report);
     void sort();
+    [[nodiscard]] neighbors::Groups groups() const;
     void find_pairs();
     void predict(Real dt, AdvanceReport& report);
     void find_eddy_viscosity(Real dt, AdvanceReport& report);
     void add_wall_shear();
     [[nodiscard]] bool solve_pressure(Real dt, AdvanceReport& report);
+    void find_known();
     void remove_axial_bias();
+    [[nodiscard]] std::vector<Real> number_ratio() const;
     void cut_pressure(AdvanceReport& report);
     void extrapolate_pressure();
-    void correct(Real dt);
+    void smooth_beside_plate();
+    void correct(Real dt, const AxialBins& before);
+    void hold_bulk_velocity(Real dt);
+    void hold_flux_of_plate(Real dt, const AxialBins& before);
     void move(Real dt, AdvanceReport& report);
+    void move_plate(Real dt, AdvanceReport& report);
+    void keep(const std::vector<std::uint8_t>& kept);
+    void enter(std::span<const Entrant> entrants);
+    void resize_liquid(std::size_t count);
 
-    geometry::Cylinder wall_;
+    Ends ends_;
+    Bore wall_;
     Real pipe_radius_, pipe_length_; // [m]
     Real density_;                   // [kg/m3]
     Real viscosity_;                 // [m2/s] kinematic
@@ -153,24 +191,24 @@ private:
     ReferenceDensity reference_;
     WallFunction wall_function_;
     StoredPairs pairs_;
-    neighbors::Cells cells_; // over the walls and ghosts, which stay
+    neighbors::Cells cells_; // over all particles at the start: pipe and plate's stroke
     neighbors::CellGrid grid_;
     PressureEquation pressure_equation_;
 
     // Particles in the order liquid, wall, ghosts, each sorted by cells; walls and ghosts for good.
-    std::size_t liquid_count_ = 0, wall_count_ = 0;
+    std::size_t liquid_count_ = 0, wall_count_ = 0, places_ = 0;
     std::vector<Vec3> position_, velocity_;
     std::vector<Kind> kind_;
     std::vector<Real> pressure_; // [Pa] p'
     std::vector<Index> id_;      // place in the order they were given
 
-    // Of each ghost, the wall particles in reach.
+    // Of each ghost, the wall particles in reach, by their places among the walls.
     std::vector<Index> behind_first_, behind_column_;
     std::vector<Real> behind_share_; // [-] of their pressures
 
     // Memory of a step.
     std::vector<Vec3> acceleration_, shift_, velocity_before_;
-    std::vector<Real> scalar_, eddy_viscosity_, right_hand_side_, pressure_before_;
+    std::vector<Real> scalar_, eddy_viscosity_, right_hand_side_, pressure_before_, known_;
     std::vector<std::uint8_t> deficient_;
     std::vector<Index> order_, id_memory_;
 

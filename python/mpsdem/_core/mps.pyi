@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'section_operators', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'PushPlate', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'section_operators', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -203,6 +203,31 @@ class WallFunction:
         (n,) float64 ndarray
             [m2/s2]
         """
+class PushPlate:
+    """
+    A plate that pushes the liquid into the pipe, and an outlet that lets it go.
+    
+    The plate works upstream of the pipe, so that the bore is always full: its face moves from
+    -(stroke + settling) to -settling and jumps back by the stroke. The gap is filled with a slab of the
+    bore's own liquid, shifted and turned. Behind the pipe, over the length of the outlet, the pressure
+    is zero and the liquid keeps its velocity.
+    
+    Parameters
+    ----------
+    velocity : float
+        Of the plate, so of the bulk [m/s], > 0.
+    stroke : float
+        [m].
+    settling : float
+        Length left between plate and bore, renewed with the gap at each return [m].
+    outlet : float
+        Length of the outlet behind the pipe [m].
+    draws : (n, 2) float64 ndarray
+        Which slab fills a gap, and how far it is turned: shares in [0, 1), a row for each return, from
+        the first row again when all are used.
+    """
+    def __init__(self, *, velocity: typing.SupportsFloat | typing.SupportsIndex, stroke: typing.SupportsFloat | typing.SupportsIndex, settling: typing.SupportsFloat | typing.SupportsIndex, outlet: typing.SupportsFloat | typing.SupportsIndex, draws: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+        ...
 class LiquidReport:
     """
     What a call of LagrangianLiquid.advance met.
@@ -213,9 +238,19 @@ class LiquidReport:
         Pressures cut to the limit.
         """
     @property
+    def crowded(self) -> int:
+        """
+        Particles left out there, nearer than half a spacing to others.
+        """
+    @property
     def deficient(self) -> int:
         """
         Particles whose neighbors fix no Laplacian: no viscosity acted there.
+        """
+    @property
+    def entered(self) -> int:
+        """
+        Particles that came to be behind the plate.
         """
     @property
     def friction(self) -> float:
@@ -238,9 +273,29 @@ class LiquidReport:
         Iterations of the pressure equation, all substeps.
         """
     @property
+    def left(self) -> int:
+        """
+        Particles that went through the outlet.
+        """
+    @property
     def mean_gradient(self) -> float:
         """
         Loss of pressure along the pipe, mean over the call [Pa/m].
+        """
+    @property
+    def plate_returns(self) -> int:
+        """
+        Returns of the plate.
+        """
+    @property
+    def pushed(self) -> int:
+        """
+        Particles kept from going nearer to the plate than 0.3 spacings.
+        """
+    @property
+    def replaced(self) -> int:
+        """
+        Particles between plate and bore that went for them.
         """
     @property
     def residual(self) -> float:
@@ -282,7 +337,7 @@ class LiquidReport:
         """
 class LagrangianLiquid:
     """
-    The particle liquid of a full, straight, periodic pipe.
+    The particle liquid of a full, straight pipe, periodic or with a push plate.
     
     Moving particles, walls of wall and ghost particles, pressure from a Poisson equation. A liquid of
     the mean flow: its stable form damps fluctuations.
@@ -297,6 +352,9 @@ class LagrangianLiquid:
         Of that layout [m].
     pipe_radius, pipe_length : float
         [m].
+    plate : PushPlate, optional
+        Without it, the pipe is periodic. With it, the layout is that of `push_plate_layout`, and what
+        lies inside the pipe's radius but is no liquid is the plate.
     density, kinematic_viscosity : float
         [kg/m3], [m2/s].
     roughness : float
@@ -322,7 +380,7 @@ class LagrangianLiquid:
     ----------
     Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
     """
-    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', pairing: str = 'conserving', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.25, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, plate: PushPlate | None = None, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', pairing: str = 'conserving', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.25, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         ...
     def __len__(self) -> int:
         ...
@@ -371,6 +429,11 @@ class LagrangianLiquid:
         Mean of the liquid [m/s].
         """
     @property
+    def count_in_bore(self) -> int:
+        """
+        Liquid particles from x = 0 to the pipe's length.
+        """
+    @property
     def density_ratio(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) number density over its mean in the liquid [-].
@@ -389,9 +452,14 @@ class LagrangianLiquid:
     def liquid_count(self) -> int:
         ...
     @property
+    def plate_face(self) -> float:
+        """
+        Where the plate meets the liquid [m]; 0 without a plate.
+        """
+    @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) [m], in the order given.
+        (n, 3) [m], in the order given; NaN in a place that no particle holds.
         """
     @property
     def pressure(self) -> numpy.typing.NDArray[numpy.float64]:

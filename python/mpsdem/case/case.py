@@ -182,7 +182,9 @@ class Case(Part):
             yield Problem(rule="a case needs [liquid], [solids] or both")
         if self.solids is not None:
             yield from self._solids_that_do_not_fit(self.solids)
-        if self.liquid is not None and self.liquid.computed:
+        if self.pipe.has_plate:
+            yield from self._a_plate_without_its_liquid()
+        if self.liquid is not None and (self.liquid.computed or self.pipe.has_plate):
             yield from self._particles_that_do_not_fit(self.liquid)
         if self.output.every > self.end_time:
             yield Problem(
@@ -199,6 +201,51 @@ class Case(Part):
                     unit="s",
                     rule=f"must be <= {self.end_time} s, the end_time",
                 )
+
+    def _a_plate_without_its_liquid(self) -> Iterable[Problem]:
+        liquid, periodic = self.liquid, "set pipe.ends = 'periodic'"
+        if liquid is None:
+            rule = "a push plate moves liquid, and the case has none"
+            yield Problem(field="pipe.ends", value=self.pipe.ends, rule=rule, remedy=periodic)
+            return
+        if liquid.model not in ("auto", "lagrangian"):
+            yield Problem(
+                field="liquid.model",
+                value=liquid.model,
+                rule="has no particles that a push plate could move",
+                remedy=f"set liquid.model = 'lagrangian', or {periodic}",
+            )
+        if liquid.bulk_velocity <= 0:
+            yield Problem(
+                field="liquid.bulk_velocity",
+                value=liquid.bulk_velocity,
+                unit="m/s",
+                rule="must be > 0 m/s, the velocity of the push plate",
+                remedy=periodic,
+            )
+        if liquid.pressure_gradient is not None:
+            yield Problem(
+                field="liquid.pressure_gradient",
+                value=liquid.pressure_gradient,
+                unit="Pa/m",
+                rule="cannot be given where a push plate drives the liquid",
+                remedy=f"leave it out, or {periodic}",
+            )
+        if self.fidelity.layout != "rings":
+            yield Problem(
+                field="fidelity.layout",
+                value=self.fidelity.layout,
+                rule="cannot have a push plate",
+                remedy=f"leave it out, or {periodic}",
+            )
+        spacing = self.fidelity.resolved_particle_spacing(self.pipe.radius)
+        if self.pipe.resolved_stroke < 2 * spacing:
+            yield Problem(
+                field="pipe.stroke",
+                value=self.pipe.stroke,
+                unit="m",
+                rule=f"must be >= {2 * spacing:g} m, two particle spacings",
+            )
 
     def _particles_that_do_not_fit(self, liquid: Liquid) -> Iterable[Problem]:
         spacing = self.fidelity.resolved_particle_spacing(self.pipe.radius)

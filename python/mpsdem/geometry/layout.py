@@ -92,6 +92,55 @@ def ring_layout(*, radius: float, length: float, spacing: float, ghost_layers: i
     return _extruded(parts, length, dx, spacing)
 
 
+def push_plate_layout(
+    *, radius: float, length: float, spacing: float, upstream: float, downstream: float
+) -> Layout:
+    """Particles of a pipe whose liquid a plate pushes: `ring_layout`, closed by a disc upstream.
+
+    Parameters
+    ----------
+    radius : float
+        Of the bore [m].
+    length : float
+        From inlet to outlet [m].
+    spacing : float
+        Asked for [m], at most the radius and the length.
+    upstream, downstream : float
+        How far liquid and wall reach beyond the inlet and the outlet [m].
+
+    Returns
+    -------
+    Layout
+        x from ``-upstream`` to ``length + downstream``. The plate is a disc of wall and one of
+        ghosts, half a spacing and one and a half before ``-upstream``; two more rings of wall and
+        ghosts stand around it.
+
+    Raises
+    ------
+    ValueError
+        If a length is not positive, or the spacing too wide for the pipe.
+    """
+    whole = length + upstream + downstream
+    pipe = ring_layout(radius=radius, length=whole, spacing=spacing)
+    dx = pipe.axial_spacing
+    liquid = pipe.kind == Kind.LIQUID
+    first = pipe.position[:, 0] < dx
+    discs = [
+        (pipe.position[first & liquid] * [0.0, 1.0, 1.0] - [(k + 0.5) * dx, 0.0, 0.0], kind)
+        for k, kind in enumerate((Kind.WALL, Kind.GHOST))
+    ]
+    collar = pipe.position[first & ~liquid] * [0.0, 1.0, 1.0]
+    added = [disc for disc, _ in discs] + [collar - [(k + 0.5) * dx, 0.0, 0.0] for k in (0, 1)]
+    kinds = [np.full(len(disc), kind, dtype=np.int8) for disc, kind in discs]
+    kinds += 2 * [pipe.kind[first & ~liquid]]
+    return Layout(
+        position=np.concatenate([pipe.position, *added]) - [upstream, 0.0, 0.0],
+        kind=np.concatenate([pipe.kind, *kinds]),
+        spacing=pipe.spacing,
+        axial_spacing=dx,
+    )
+
+
 def lattice_layout(
     *, radius: float, length: float, spacing: float, ghost_layers: int = 2
 ) -> Layout:

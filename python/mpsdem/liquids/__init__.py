@@ -2,12 +2,13 @@
 
 from mpsdem.liquids.build import build_liquid, node_layout_of, particle_layout
 from mpsdem.liquids.nodes import NodeLiquid
-from mpsdem.liquids.particles import CLIPS, ParticleLiquid
+from mpsdem.liquids.particles import CLIPS, PLATE_COUNTS, ParticleLiquid
 from mpsdem.liquids.profile import ProfileLiquid
 from mpsdem.liquids.protocol import Liquid
 
 __all__ = [
     "CLIPS",
+    "PLATE_COUNTS",
     "Liquid",
     "NodeLiquid",
     "ParticleLiquid",

@@ -7,22 +7,53 @@ import numpy as np
 from mpsdem._core import mps
 from mpsdem.case import Case
 from mpsdem.case import Liquid as Scene
-from mpsdem.geometry import Kind, Layout, NodeLayout, lattice_layout, node_layout, ring_layout
+from mpsdem.geometry import (
+    Kind,
+    Layout,
+    NodeLayout,
+    lattice_layout,
+    node_layout,
+    push_plate_layout,
+    ring_layout,
+)
 from mpsdem.liquids.bins import sample
 from mpsdem.liquids.nodes import NodeLiquid
 from mpsdem.liquids.particles import ParticleLiquid
 from mpsdem.liquids.profile import ProfileLiquid
 from mpsdem.liquids.protocol import Liquid
-from mpsdem.plan import Plan, clear_gradient, pipe_profile, turbulence
+from mpsdem.plan import Plan, clear_gradient, outlet_length, pipe_profile, turbulence
 
+_SLABS = 256  # slabs that fill the gap behind a push plate, until they come again
 _SMAGORINSKY = 0.1  # [-] C_s, that of shear flows
 
 
 def particle_layout(case: Case) -> Layout:
     """Where the particles of a case's liquid start."""
-    spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+    pipe = case.pipe
+    spacing = case.fidelity.resolved_particle_spacing(pipe.radius)
+    if pipe.has_plate:
+        return push_plate_layout(
+            radius=pipe.radius,
+            length=pipe.length,
+            spacing=spacing,
+            upstream=pipe.resolved_stroke + pipe.settling_length,
+            downstream=outlet_length(case),
+        )
     layout = lattice_layout if case.fidelity.layout == "lattice" else ring_layout
-    return layout(radius=case.pipe.radius, length=case.pipe.length, spacing=spacing)
+    return layout(radius=pipe.radius, length=pipe.length, spacing=spacing)
+
+
+def _push_plate(case: Case) -> mps.PushPlate | None:
+    pipe = case.pipe
+    if case.liquid is None or not pipe.has_plate:
+        return None
+    return mps.PushPlate(
+        velocity=case.liquid.bulk_velocity,
+        stroke=pipe.resolved_stroke,
+        settling=pipe.settling_length,
+        outlet=outlet_length(case),
+        draws=np.random.default_rng(0).random((_SLABS, 2)),
+    )
 
 
 def node_layout_of(case: Case) -> NodeLayout:
@@ -101,6 +132,7 @@ def _of_particles(case: Case, liquid: Scene, plan: Plan) -> ParticleLiquid:
         particle_spacing=layout.spacing,
         pipe_radius=pipe.radius,
         pipe_length=pipe.length,
+        plate=_push_plate(case),
         density=liquid.density,
         kinematic_viscosity=liquid.kinematic_viscosity,
         roughness=pipe.roughness,
@@ -112,11 +144,15 @@ def _of_particles(case: Case, liquid: Scene, plan: Plan) -> ParticleLiquid:
         solver=case.fidelity.pressure_solver,
         threads=plan.threads,
     )
+    vacant = len(particles) - len(layout.kind)  # places for what a plate may bring in
+    kind = np.concatenate([layout.kind, np.full(vacant, Kind.LIQUID, dtype=np.int8)])
     return ParticleLiquid(
         particles=particles,
-        kind=layout.kind,
+        kind=kind,
+        full_count=particles.count_in_bore,
+        has_plate=pipe.has_plate,
         pipe_radius=pipe.radius,
         pipe_length=pipe.length,
         sampling_radius=max(plan.smoothing_radius, 2.1 * layout.spacing),
-        written=sample(len(layout.kind), case.output.liquid_stride),
+        written=sample(len(kind), case.output.liquid_stride),
     )

@@ -18,6 +18,9 @@ from mpsdem.liquids.protocol import FloatArray, Stored
 #: What the particle liquid cuts and counts, by the names of its report and of the results.
 CLIPS = ("clamped", "viscosity_capped", "shifts_cut", "deficient", "held_back")
 
+#: What it counts besides where a plate pushes it.
+PLATE_COUNTS = ("plate_returns", "entered", "replaced", "crowded", "left", "pushed")
+
 
 @dataclass(slots=True, kw_only=True)
 class Tally:
@@ -35,6 +38,17 @@ class Tally:
     shifts_cut: int = 0
     deficient: int = 0
     held_back: int = 0
+    plate_returns: int = 0
+    entered: int = 0
+    replaced: int = 0
+    crowded: int = 0
+    left: int = 0
+    pushed: int = 0
+
+    @property
+    def plate_counts(self) -> dict[str, ArrayLike]:
+        """What the push plate did, by the names of the results."""
+        return {name: getattr(self, name) for name in PLATE_COUNTS}
 
     @property
     def clips(self) -> dict[str, ArrayLike]:
@@ -44,14 +58,18 @@ class Tally:
 
 @dataclass(slots=True, kw_only=True)
 class ParticleLiquid:
-    """MPS proper: moving particles in a full, straight, periodic pipe.
+    """MPS proper: moving particles in a full, straight pipe, periodic or with a push plate.
 
     Parameters
     ----------
     particles : mps.LagrangianLiquid
         What moves.
     kind : (n,) int8 ndarray
-        2 liquid, -2 wall, -1 ghost.
+        Of each place for a particle: 2 liquid, -2 wall, -1 ghost.
+    full_count : int
+        Liquid particles that fill the bore.
+    has_plate : bool
+        Whether a plate pushes the liquid.
     pipe_radius, pipe_length : float
         [m].
     sampling_radius : float
@@ -62,6 +80,8 @@ class ParticleLiquid:
 
     particles: mps.LagrangianLiquid
     kind: NDArray[np.int8]
+    full_count: int
+    has_plate: bool
     pipe_radius: float
     pipe_length: float
     sampling_radius: float
@@ -79,16 +99,21 @@ class ParticleLiquid:
         tally.substeps += report.substeps
         tally.iterations += report.iterations
         tally.residual = max(tally.residual, report.residual)
-        for name in CLIPS:
+        for name in (*CLIPS, *PLATE_COUNTS):
             setattr(tally, name, getattr(tally, name) + getattr(report, name))
         self.sound = report.sound
 
     @property
     def count_in_bore(self) -> int:
         """Liquid particles that are where liquid can be."""
-        x = self.particles.position[self.kind == Kind.LIQUID]
+        return int(self._in_bore(self.particles.position).sum())
+
+    def _in_bore(self, x: FloatArray) -> NDArray[np.bool_]:
+        """Which are liquid of the bore: none without a position, none at the plate."""
         inside = np.hypot(x[:, 1], x[:, 2]) < self.pipe_radius
-        return int((inside & (x[:, 0] >= 0) & (x[:, 0] < self.pipe_length)).sum())
+        along = (x[:, 0] >= 0) & (x[:, 0] < self.pipe_length)
+        result: NDArray[np.bool_] = (self.kind == Kind.LIQUID) & inside & along
+        return result
 
     def velocity_at(self, position: FloatArray) -> FloatArray:
         velocity: FloatArray = self.particles.velocity_at(
@@ -119,7 +144,7 @@ class ParticleLiquid:
         particles, tally = self.particles, self.tally
         position, velocity = particles.position, particles.velocity
         pressure = particles.pressure
-        liquid = self.kind == Kind.LIQUID
+        liquid = self._in_bore(position)
         ring = np.digitize(np.hypot(*position[liquid, 1:].T), self._edges[1:-1])
         share = position[liquid, 0] / self.pipe_length
         section = np.minimum((share * self._sections).astype(np.intp), self._sections - 1)
@@ -146,6 +171,7 @@ class ParticleLiquid:
             "pressure_noise": particles.pressure_noise,
             "liquid_kinetic_energy": particles.kinetic_energy,
             **tally.clips,
+            **(tally.plate_counts if self.has_plate else {}),
         }
         self.tally = Tally()
         return fields, diagnostics

@@ -261,7 +261,13 @@ def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
     solids, liquid = case.solids, case.liquid
     model = liquid_model(case)
     if liquid is not None and model in _LIQUID_KINDS:
-        if liquid.model == "auto":
+        if case.pipe.has_plate:
+            asked = (
+                f"move, as a plate pushes them in strokes of {case.pipe.resolved_stroke:g} m, and "
+                f"works in {case.pipe.resolved_stroke + case.pipe.settling_length:g} m of pipe "
+                "upstream"
+            )
+        elif liquid.model == "auto":
             asked = (
                 "as the liquid must be computed (its pressure gradient is given), and the pipe is "
                 "straight, full, rigid and periodic"

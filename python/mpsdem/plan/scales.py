@@ -152,13 +152,16 @@ def impact_speed(case: Case) -> float:
 def liquid_model(case: Case) -> str | None:
     """Name of the model that computes the liquid; None without any.
 
-    What is asked for, else the prescribed profile while it is known; the pipes here being straight,
-    full, rigid and periodic, a liquid that must be computed is computed on fixed nodes.
+    What is asked for, else particles for a plate to push, else the prescribed profile while it is
+    known; other pipes here being straight, full, rigid and periodic, a liquid that must be computed
+    is computed on fixed nodes.
     """
     if case.liquid is None:
         return None
     if case.liquid.model != "auto":
         return case.liquid.model
+    if case.pipe.has_plate:
+        return "lagrangian"
     return "eulerian" if case.liquid.computed else "profile"
 
 
@@ -192,12 +195,23 @@ def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
     return None
 
 
+def outlet_length(case: Case) -> float:
+    """Length behind the outlet over which leaving liquid is kept [m].
+
+    Longer than the reach of the operators, 2.1 spacings, so that they are whole at the outlet.
+    """
+    return 3 * case.fidelity.resolved_particle_spacing(case.pipe.radius)
+
+
 def particle_count(case: Case) -> int:
     """Particles or nodes of the liquid, about; 0 unless it is computed."""
     if liquid_model(case) not in ("eulerian", "lagrangian"):
         return 0
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
-    return round(case.pipe.bore_volume / spacing**3)
+    pipe, length = case.pipe, case.pipe.length
+    if pipe.has_plate:
+        length += pipe.resolved_stroke + pipe.settling_length + outlet_length(case)
+    return round(math.pi * pipe.radius**2 * length / spacing**3)
 
 
 def pipe_profile(case: Case) -> mps.PipeProfile:

@@ -159,10 +159,12 @@ def _particles(results: Results, frame: int) -> _Particles:
     liquid = results.liquid
     if not liquid.has_particles:
         raise ResultsError(f"the run in {results.directory} recorded no particles of liquid")
-    flows = liquid.kind == LIQUID_KIND
+    position = liquid.position[frame]
+    along = (position[:, 0] >= 0) & (position[:, 0] < results.case.pipe.length)
+    flows = (liquid.kind == LIQUID_KIND) & along  # with a push plate some are not there
     pressure = liquid.pressure[frame][flows]
     return _Particles(
-        position=liquid.position[frame][flows],
+        position=position[flows],
         velocity=liquid.velocity[frame][flows, 0],
         pressure=pressure - pressure.mean(),
     )

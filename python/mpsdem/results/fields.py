@@ -48,7 +48,12 @@ LIQUID = _table(
     ("section_position", "m", "Middles of equal bins along the pipe"),
     ("section_pressure", "Pa", "Mean pressure in those bins, mean gradient and static head apart"),
     ("kind", "1", "Each recorded particle: 2 liquid, -2 wall, -1 ghost", "int8"),
-    ("position", "m", "Place of each recorded particle; x wrapped into [0, pipe length)"),
+    (
+        "position",
+        "m",
+        "Place of each recorded particle, x wrapped into [0, pipe length) in a periodic pipe; with "
+        "a push plate, NaN where no particle holds the place in this frame",
+    ),
     ("velocity", "m/s", "Velocity of each recorded particle"),
     ("pressure", "Pa", "Pressure of each recorded particle, mean gradient and static head apart"),
 )
@@ -76,6 +81,12 @@ DIAGNOSTICS = _table(
     ("shifts_cut", "1", "Shifts of particles cut to their longest since the last frame", "int64"),
     ("deficient", "1", "Particles without a viscous term since the last frame", "int64"),
     ("held_back", "1", "Particles held back from a wall since the last frame", "int64"),
+    ("plate_returns", "1", "Returns of the push plate since the last frame", "int64"),
+    ("entered", "1", "Particles that filled the gap behind it since the last frame", "int64"),
+    ("replaced", "1", "Particles before it that went for them since the last frame", "int64"),
+    ("crowded", "1", "Particles left out of the gap, too near to others", "int64"),
+    ("left", "1", "Particles that left through the outlet since the last frame", "int64"),
+    ("pushed", "1", "Particles held back from the push plate since the last frame", "int64"),
 )
 
 GROUPS: Mapping[str, Mapping[str, FieldInfo]] = MappingProxyType(

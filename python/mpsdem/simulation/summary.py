@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 
 from mpsdem.analysis import extent
-from mpsdem.liquids import CLIPS, NodeLiquid, ParticleLiquid
+from mpsdem.liquids import CLIPS, PLATE_COUNTS, NodeLiquid, ParticleLiquid
 from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import Results
 from mpsdem.stages import State
@@ -118,15 +118,20 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
 
 
 def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
-    count = liquid.particles.liquid_count
-    return {
-        "liquid_count": count,
+    def total(names: Iterable[str]) -> dict[str, int]:
+        return {name: int(results.diagnostics[name].sum()) for name in names}
+
+    values: dict[str, Any] = {
+        "liquid_count": liquid.particles.liquid_count,
         # particles carry the mass, as long as they are in the bore
-        "mass_error": 1 - liquid.count_in_bore / count,
+        "mass_error": 1 - liquid.count_in_bore / liquid.full_count,
         "pressure_iterations": _mean(results, "pressure_iterations"),
         "momentum_error": _liquid_momentum_error(results),
-        "liquid_clips": {name: int(results.diagnostics[name].sum()) for name in CLIPS},
+        "liquid_clips": total(CLIPS),
     }
+    if liquid.has_plate:
+        values["push_plate"] = total(PLATE_COUNTS)
+    return values
 
 
 def _of_nodes(liquid: NodeLiquid, results: Results) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from rich.console import Console
 
-from mpsdem.validation import drag, eulerian, impacts, particle_liquid, pipe, rolling
+from mpsdem.validation import drag, eulerian, impacts, particle_liquid, pipe, push_plate, rolling
 from mpsdem.validation.registry import Check, Outcome, Source, collect, select
 from mpsdem.validation.report import report
 
@@ -24,6 +24,7 @@ CHECKS = collect(
     pipe.checks(),
     particle_liquid.checks(),
     eulerian.checks(),
+    push_plate.checks(),
 )
 """All checks by their ids."""
 
