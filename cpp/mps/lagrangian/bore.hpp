@@ -17,8 +17,6 @@ public:
     [[nodiscard]] static constexpr Real no_plate() noexcept {
         return -std::numeric_limits<Real>::infinity();
     }
-    [[nodiscard]] Real face() const noexcept { return face_; } // [m] of the plate
-    void move_plate(Real distance) noexcept { face_ += distance; }
     void place_plate(Real face) noexcept { face_ = face; }
 
     [[nodiscard]] bool of_plate(const Vec3& particle) const noexcept {
