@@ -14,8 +14,6 @@ public:
 
     /// [m] So far away that it counts as none, and yet a number.
     static constexpr Real no_plate = -1e12;
-    [[nodiscard]] Real face() const noexcept { return face_; } // [m] of the plate
-    void move_plate(Real distance) noexcept { face_ += distance; }
     void place_plate(Real face) noexcept { face_ = face; }
 
     [[nodiscard]] bool of_plate(const Vec3& particle) const noexcept {

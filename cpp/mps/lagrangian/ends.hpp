@@ -66,7 +66,6 @@ public:
         return {periodic() ? 0 : face_, pipe_length_, width, periodic()};
     }
     [[nodiscard]] Real plate_velocity() const noexcept { return plate_.velocity; } // [m/s]
-    [[nodiscard]] Real stroke() const noexcept { return plate_.stroke; }           // [m]
     [[nodiscard]] Real face() const noexcept { return face_; } // [m] of the plate
 
     /// Go on with the plate for dt [s].

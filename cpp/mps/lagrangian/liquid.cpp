@@ -127,7 +127,7 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
         places_ += static_cast<std::size_t>(spare_places * static_cast<Real>(liquid_count_)) + 1;
     for (std::size_t i = liquid_count_; i < size(); ++i) {
         if (!ends_.periodic() && wall_.of_plate(position_[i]))
-            velocity_[i] = {plate->velocity, 0, 0};
+            velocity_[i] = {ends_.plate_velocity(), 0, 0};
     }
     pressure_.assign(size(), 0);
     find_pairs();
