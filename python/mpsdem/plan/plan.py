@@ -40,8 +40,8 @@ _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
 _CALL_TIME = 1e-4  # [s] one turn of the time loop
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 # [s] one step of one liquid particle or node, its pressure included, and its memory
-_PARTICLE_TIME = {"lagrangian": 3e-6, "eulerian": 0.4e-6}
-_PARTICLE_BYTES = {"lagrangian": 1300, "eulerian": 400}
+_PARTICLE_TIME = {"lagrangian": 2e-6, "eulerian": 0.4e-6}
+_PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
 # Wall units from the wall below which the nodes' friction is 4 % high: 4.3 % at 15, 3.6 % at 26.
 _LEAST_PLUS = 20

@@ -126,11 +126,12 @@ def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
         # particles carry the mass, as long as they are in the bore
         "mass_error": 1 - liquid.count_in_bore / liquid.full_count,
         "pressure_iterations": _mean(results, "pressure_iterations"),
-        "momentum_error": _liquid_momentum_error(results),
         "liquid_clips": total(CLIPS),
     }
-    if liquid.has_plate:
+    if liquid.has_plate:  # plate and outlet act through the pressure: no ledger without it
         values["push_plate"] = total(PLATE_COUNTS)
+    else:
+        values["momentum_error"] = _liquid_momentum_error(results)
     return values
 
 
