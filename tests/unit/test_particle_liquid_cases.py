@@ -104,6 +104,28 @@ def test_what_the_method_cannot_bear_is_refused_with_its_limit(fidelity, length,
     assert said in str(refusal.value)
 
 
+def test_the_step_may_be_shortened_and_the_plan_names_what_binds_it():
+    free, given = make_plan(case()), make_plan(case(fidelity={"liquid_step": 1e-3}))
+    assert "of the liquid's time to cross a spacing" in free.liquid_step.binding.name
+    assert given.liquid_step.binding.name == "fidelity.liquid_step, as given"
+    assert given.liquid_step.value <= 1e-3 < free.liquid_step.value
+
+
+def test_a_uniform_acceleration_of_the_full_pipe_moves_nothing(tmp_path):
+    """Gravity in any direction is split off the pressure: to the last bit."""
+    level = case(end_time=0.1)
+    runs = {
+        "level": level,
+        "steep": level.with_(pipe={"inclination": 0.9}),
+        "without": level.with_(gravity=0.0),
+    }
+    found = {name: Simulation(of, output=tmp_path / name).run() for name, of in runs.items()}
+    for name in ("steep", "without"):
+        for field in ("position", "velocity", "pressure"):
+            here, there = (getattr(found[k].liquid, field) for k in ("level", name))
+            np.testing.assert_array_equal(here, there)
+
+
 def test_the_liquid_starts_at_the_bulk_velocity(tmp_path):
     results = Simulation(case(), output=tmp_path).run()
     assert results.diagnostics["bulk_velocity"][0] == pytest.approx(1.0, rel=1e-12)

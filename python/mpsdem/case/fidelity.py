@@ -23,6 +23,8 @@ class Fidelity(Part):
         Time step of the solids over the Rayleigh time of the smallest of them [-]; at most 0.5.
     solid_step : float, optional
         Time step of the solids [s]; refused by the plan if it exceeds a limit.
+    liquid_step : float, optional
+        Longest time step of a computed liquid [s]; Courant number and viscosity may shorten it.
     coupling_step : float, optional
         Time between two exchanges with the liquid [s].
     stiffness_factor : float
@@ -60,6 +62,7 @@ class Fidelity(Part):
     level: Literal["quick", "balanced", "fine"] = "balanced"
     rayleigh_fraction: Annotated[float, Quantity(above=0.0, at_most=0.5)] | None = None
     solid_step: Annotated[float, Quantity("s", above=0.0)] | None = None
+    liquid_step: Annotated[float, Quantity("s", above=0.0)] | None = None
     coupling_step: Annotated[float, Quantity("s", above=0.0)] | None = None
     stiffness_factor: Annotated[float, Quantity(above=0.0, at_most=1.0)] = 1.0
     smoothing_radius: Annotated[float, Quantity("m", above=0.0)] | None = None

@@ -162,6 +162,8 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
         yield Limit(name=name, value=courant * spacing / on_axis)
     viscous = _VISCOUS_SHARE * spacing**2 / case.liquid.kinematic_viscosity
     yield Limit(name=f"{_VISCOUS_SHARE:g} of the viscous time of a spacing", value=viscous)
+    if case.fidelity.liquid_step is not None:
+        yield Limit(name="fidelity.liquid_step, as given", value=case.fidelity.liquid_step)
 
 
 def _require_solver(case: Case) -> None:
