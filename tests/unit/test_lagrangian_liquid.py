@@ -129,6 +129,26 @@ def test_energy_does_not_grow_without_drive():
     assert energy[-1] < energy[0]
 
 
+def test_a_disturbance_loses_most_of_its_energy_within_fifteen_radii():
+    """Less than 15 % is left: of a liquid of the mean flow nothing else may be expected."""
+    liquid, moving = pipe(across=10, length=0.2, reynolds=2e5, velocity=power_law, swirl=0.1)
+    before = np.mean(liquid.velocity[moving, 1:] ** 2)
+    run(liquid, time=1.5, step=0.0125)
+    assert np.mean(liquid.velocity[moving, 1:] ** 2) < 0.15 * before
+
+
+def test_friction_does_not_depend_on_the_step():
+    """Whatever is done once a step, such as shifting, must go with the step's length."""
+    frictions = []
+    for courant in (0.8, 0.4):
+        liquid, _ = pipe(
+            across=10, length=0.2, reynolds=2e5, velocity=power_law, swirl=0.1, courant=courant
+        )
+        run(liquid, time=1.5, step=0.012)
+        frictions.append(np.mean([r.friction for r in run(liquid, time=1.5, step=0.012)]))
+    assert frictions[0] == pytest.approx(frictions[1], rel=0.03)
+
+
 def test_results_do_not_depend_on_threads():
     ends = []
     for threads in (1, 2):

@@ -216,10 +216,10 @@ class Oscillation:
 
 @cache
 def oscillation(womersley: float, across: int) -> Oscillation:
-    """A flow in a gradient K cos(w t), started as the exact one, one cycle and half of a fit.
+    """A flow in a gradient K cos(w t), started as the exact one; its largest bulk velocity is 1.
 
-    The largest bulk velocity is 1. Measured at every step over the last cycle; of the slowest,
-    where a quarter of it is as long as any disturbance lives, over the last quarter.
+    Measured at every step of a cycle, or of R^2 / nu where that is shorter, after a quarter of
+    R^2 / nu: six times, and one and a half times, as long as the slowest disturbance lives.
     """
     mean = exact.mean_oscillation(womersley)
     nu = 1 / LAMINAR_REYNOLDS
@@ -242,8 +242,9 @@ def oscillation(womersley: float, across: int) -> Oscillation:
     cycle = 2 * math.pi / frequency
     in_cycle = math.ceil(cycle / _viscous_step(across))
     step = cycle / in_cycle
-    measured = in_cycle if womersley > 2 else in_cycle // 4
-    steps = measured * 3 // 2
+    diffusion = RADIUS**2 / nu
+    measured = math.ceil(min(cycle, diffusion) / step)
+    steps = measured + math.ceil(0.25 * diffusion / step)
     times, differences = [], []
     for k in range(steps):
         # The force of the middle of the step: the error of this splitting is of second order.
@@ -286,7 +287,7 @@ class Turbulent:
         Of the whole run, over that at the start [-].
     largest_scatter : float
         Of the number density over its mean [-], of the whole run.
-    largest_noise : float
+    noise : float
         Root mean square change of the pressure in a step [rho U^2], of the second half.
     outside : int
         Most liquid particles that were outside of the wall at once.
@@ -304,7 +305,7 @@ class Turbulent:
     profile: FloatArray = field(repr=False)
     kinetic_energy: FloatArray = field(repr=False)
     largest_scatter: float
-    largest_noise: float
+    noise: float
     outside: int
     mass: float
     clips: int
@@ -387,7 +388,7 @@ def turbulent(
         profile=total / count,
         kinetic_energy=np.array(energy) / energy[0],
         largest_scatter=max(scatter),
-        largest_noise=max(noise),
+        noise=math.sqrt(np.mean(np.square(noise))),
         outside=outside,
         mass=float(inside.sum() / pipe.moving.sum()),
         clips=clips,
