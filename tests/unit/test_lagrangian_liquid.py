@@ -146,7 +146,7 @@ def test_friction_does_not_depend_on_the_step():
         )
         run(liquid, time=1.5, step=0.012)
         frictions.append(np.mean([r.friction for r in run(liquid, time=1.5, step=0.012)]))
-    assert frictions[0] == pytest.approx(frictions[1], rel=0.03)
+    assert frictions[0] == pytest.approx(frictions[1], rel=0.015)
 
 
 def test_results_do_not_depend_on_threads():
