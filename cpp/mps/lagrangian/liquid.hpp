@@ -69,7 +69,8 @@ struct AdvanceReport {
 /// Stable where it was measured, but dissipative: of the kinetic energy of a swirl of 0.1 U at a
 /// Reynolds number of 2e5, 45, 19 and 12 % are left after 5, 10 and 15 R/U at ten spacings across,
 /// 33, 13 and 8 % at sixteen. It is a liquid of the mean flow, not of its eddies. Laminar flow has
-/// no such damping: from a Reynolds number of a few hundred on a swirl lives on, at 2000 it diverges.
+/// no such damping: from a Reynolds number of a few hundred on a swirl lives on, at 2000 it
+/// diverges.
 ///
 /// Sources: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205; shifting after Xu, Stansby &
 /// Laurence (2009), doi:10.1016/j.jcp.2009.05.032.

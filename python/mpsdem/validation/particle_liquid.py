@@ -36,8 +36,8 @@ T = TypeVar("T")
 ACROSS = (10, 16, 24)
 
 FEW_RINGS = (
-    "the mean of the particles takes a parabola at the middles of the rings they start on, which is "
-    "(2 / D/dx)^2 / 2 high, until the flow has mixed the rings; a laminar flow of five rings does not"
+    "the mean of the particles takes a parabola at the middles of the rings that they start on, "
+    "half of (2 dx / D)^2 high, until the flow has mixed them; one of five rings does not"
 )
 
 REST_CASE = """
