@@ -46,6 +46,13 @@ def test_smagorinsky_comes_with_a_warning_of_its_friction():
     assert make_plan(case()).warnings == ()
 
 
+@pytest.mark.parametrize(("reynolds", "warnings"), [(100, 0), (1000, 1)])
+def test_laminar_flow_that_keeps_its_disturbances_comes_with_a_warning(reynolds, warnings):
+    plan = make_plan(case(liquid={"kinematic_viscosity": 0.1 / reynolds}))
+    assert len(plan.warnings) == warnings
+    assert all("do not damp a swirl" in warning for warning in plan.warnings)
+
+
 def test_an_eddy_viscosity_in_laminar_flow_is_refused():
     laminar = case(fidelity={"turbulence": "smagorinsky"}, liquid={"kinematic_viscosity": 1e-3})
     with pytest.raises(CaseError, match=r"fidelity.turbulence = 'smagorinsky': needs turbulent"):

@@ -41,9 +41,11 @@ bool PressureEquation::solve(std::span<const Real> right_hand_side, std::span<Re
     };
     bool solved = false;
     switch (solver_) {
-    case Solver::two_level:
-        preconditioner_->follow(matrix_, position_, threads_);
-        solved = iterate(*preconditioner_, most_iterations);
+    case Solver::two_level: {
+        if (!preconditioner_) preconditioner_.emplace(matrix_, cloud(), threads_);
+        linear::TwoLevelAdditive& kept = *preconditioner_;
+        kept.follow(matrix_, position_, threads_);
+        solved = iterate(kept, most_iterations);
         if (!solved) {
             ++tally.retries;
             std::ranges::fill(pressure, Real{0});
@@ -51,6 +53,7 @@ bool PressureEquation::solve(std::span<const Real> right_hand_side, std::span<Re
             solved = iterate(anew, most_iterations);
         }
         break;
+    }
     case Solver::jacobi: {
         linear::Jacobi preconditioner(matrix_);
         solved = iterate(preconditioner, most_jacobi_iterations);

@@ -44,6 +44,7 @@ _PARTICLE_TIME = {"lagrangian": 2e-6, "eulerian": 0.4e-6}
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
 # Wall units from the wall below which the nodes' friction is 4 % high: 4.3 % at 15, 3.6 % at 26.
+_LIVELY = 300  # [-] Reynolds number up to which laminar particles damp a swirl
 _LEAST_PLUS = 20
 _BASE_BYTES = 150_000_000  # memory of the program before any solid
 
@@ -345,6 +346,13 @@ def _wall_law_warnings(case: Case) -> Iterator[str]:
 
 def _warnings(case: Case, speed: float) -> Iterator[str]:
     solids, liquid = case.solids, case.liquid
+    if liquid is not None and liquid_model(case) == "lagrangian" and turbulence(case) is None:
+        reynolds = abs(liquid.bulk_velocity) * 2 * case.pipe.radius / liquid.kinematic_viscosity
+        if reynolds > _LIVELY:
+            yield (
+                f"at a Reynolds number of {reynolds:.0f} the particles do not damp a swirl, as "
+                "laminar flow should: take liquid.model = 'eulerian' where it is disturbed"
+            )
     if liquid_model(case) == "lagrangian" and turbulence(case) == "smagorinsky":
         yield (
             "fidelity.turbulence = smagorinsky leaves the mean flow to eddies that the particles "
