@@ -7,7 +7,8 @@
 
 namespace mpsdem::coupling {
 
-/// Liquid velocity at points, from liquid particles in a pipe periodic along x [m/s]:
+/// Liquid velocity at points, from liquid particles in a pipe of a period along x, 0 for none
+/// [m/s]:
 ///
 ///   u(x) = sum_i u_i W_s(|x - x_i|) / sum_i W_s(|x - x_i|)
 ///

@@ -82,14 +82,17 @@ void NeighborList::prepare(std::span<const Vec3> position, const Groups& groups,
     group_.resize(groups.group.size(), {CellGrid(radius_, period_), {}, {}, {}, {}});
     blocks_.clear();
     std::size_t points = 0;
+    bool reaches_rows = groups.rows == 0;
     for (std::size_t g = 0; g < group_.size(); ++g) {
         const std::size_t count = groups.group[g];
         sort_group(group_[g], cells, points, count, threads);
         points += count;
+        reaches_rows = reaches_rows || points == groups.rows;
         if (points > groups.rows) continue;
         for (std::size_t k = 0; k < count; k += block_rows)
             blocks_.push_back({g, k, std::min(count, k + block_rows)});
     }
+    require(reaches_rows, "NeighborList: rows must be those of whole groups");
     require(points == position.size(), "NeighborList: the groups must have all points");
     first_.resize(groups.rows);
     inner_.resize(groups.rows);

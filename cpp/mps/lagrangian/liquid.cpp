@@ -99,6 +99,8 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     require(position.size() == velocity.size() && position.size() == kind.size(),
             "Liquid: position, velocity and kind must have the same length");
     require_drive(ends_, drive);
+    require(!plate || plate->stroke >= 2 * numerics.particle_spacing,
+            "PushPlate: stroke must be at least two particle spacings");
     require(density > 0, "Liquid: density must be > 0 kg/m3");
     require(numerics.courant > 0, "Liquid: courant must be > 0");
     require(numerics.tolerance > 0, "Liquid: tolerance must be > 0");
@@ -196,7 +198,8 @@ Real Liquid::fastest() const {
 /// Largest step for the speeds and the molecular viscosity [s]; the eddy viscosity is cut to fit.
 Real Liquid::stable_step() const {
     const Real dx = numerics_.particle_spacing;
-    const Real speed = std::max(fastest(), std::numeric_limits<Real>::min());
+    const Real speed =
+        std::max({fastest(), ends_.plate_velocity(), std::numeric_limits<Real>::min()});
     return std::min(numerics_.courant * dx / speed, viscous_limit * dx * dx / viscosity_);
 }
 
@@ -648,8 +651,8 @@ void Liquid::restore(const Snapshot& s) {
     require(alike && s.velocity.size() == n && s.pressure.size() == n && s.id.size() == n &&
                 std::ranges::all_of(s.id, [&](Index id) { return id < places_; }),
             "restore: the snapshot belongs to another liquid");
+    ends_.restore(s.ends); // first, as it may refuse
     resize_liquid(n - solids());
-    ends_.restore(s.ends);
     if (!ends_.periodic()) wall_.place_plate(ends_.face());
     position_ = s.position;
     velocity_ = s.velocity;

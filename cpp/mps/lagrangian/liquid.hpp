@@ -70,7 +70,7 @@ struct AdvanceReport {
 /// A step finds the neighbors once and takes every operator there:
 ///
 ///   u* = u + dt (viscous acceleration + wall shear)
-///   lap p' = (rho / dt) div u*      slip wall; less its mean and its axial long-wave bias
+///   lap p' = (rho / dt) div u*      slip wall if turbulent; less its mean and axial long-wave bias
 ///   u  = u* - dt / rho grad p' + dt G / rho x^
 ///   x  <- x + dt u + shift
 ///
@@ -94,7 +94,7 @@ public:
            const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
            Real roughness, Flow flow, const Drive& drive, const Numerics& numerics);
 
-    /// Advance by dt [s], in as many equal substeps as the Courant number and viscosity ask for.
+    /// Advance by dt [s], in as few substeps as the Courant number and viscosity allow.
     AdvanceReport advance(Real dt);
 
     /// Drive the liquid otherwise from now on. A plate drives it alone.
@@ -119,7 +119,7 @@ public:
     [[nodiscard]] std::vector<Vec3> velocity() const; // [m/s]
     [[nodiscard]] std::vector<Kind> kind() const;
     [[nodiscard]] std::vector<Real> pressure() const;      // [Pa] p'
-    [[nodiscard]] std::vector<Real> density_ratio() const; // [-] n / mean n, of the last step
+    [[nodiscard]] std::vector<Real> density_ratio() const; // [-] n / mean n, as they lie now
     [[nodiscard]] Real bulk_velocity() const;              // [m/s] mean of the particles
     [[nodiscard]] Real pressure_gradient() const noexcept { return gradient_; } // [Pa/m] last step
     [[nodiscard]] Real wall_shear() const noexcept { return wall_shear_; }      // [Pa] mean
@@ -129,7 +129,7 @@ public:
         return pressure_noise_;
     } // [Pa] rms change
 
-    /// Exact state; restoring it continues bit-equal.
+    /// Exact state but for the drive; restoring it continues bit-equal.
     struct Snapshot {
         std::vector<Vec3> position, velocity;
         std::vector<Real> pressure;

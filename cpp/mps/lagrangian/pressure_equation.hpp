@@ -41,8 +41,8 @@ public:
     /// Make the coarse matrix from the matrix looked at.
     void prepare();
 
-    /// Solve from the first guess in `pressure` (rows,). Where the solve fails, once more from zero
-    /// with a new coarse matrix; false where that fails too.
+    /// Solve from the first guess in `pressure` (rows,). Where the two-level solve fails, once more
+    /// from zero with a new coarse matrix; false where that fails too.
     [[nodiscard]] bool solve(std::span<const Real> right_hand_side, std::span<Real> pressure,
                              SolveTally& tally);
 

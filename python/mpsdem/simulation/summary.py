@@ -61,7 +61,7 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
     elif plan.case.gravity == 0:
         reasons |= {"bed_height": "no gravity"}
     if not errors:
-        reasons |= {"momentum_error": "nothing took an impulse at the wall"}
+        reasons |= {"momentum_error": _no_ledger(plan)}
     return values, reasons
 
 
@@ -167,6 +167,14 @@ def _of_solids(plan: Plan, state: State, results: Results) -> dict[str, Any]:
         delivered = concentration * mean_velocity / liquid.bulk_velocity
         values["delivered_concentration"] = delivered
     return values
+
+
+def _no_ledger(plan: Plan) -> str:
+    if plan.case.pipe.has_plate:
+        return "plate and outlet act through the pressure"
+    if plan.case.solids is None and plan.liquid_model in ("profile", "eulerian"):
+        return "this liquid keeps no ledger"
+    return "nothing took an impulse at the wall"
 
 
 def _liquid_momentum_error(results: Results) -> float | None:
