@@ -19,7 +19,7 @@ from mpsdem._core import coupling, dem, geometry
 from mpsdem.case import Case, Material, Solids
 from mpsdem.contacts import Impact
 from mpsdem.geometry import place_solids
-from mpsdem.liquids import Liquid, build_liquid
+from mpsdem.liquids import ComputedLiquid, Liquid, build_liquid
 from mpsdem.plan import (
     DRAG_LAWS,
     DragLaw,
@@ -60,18 +60,34 @@ class State:
         Positions, velocities, spins and contacts; None in clear liquid.
     liquid : Liquid or None
         What carries them; None in a dry scene.
+    exchange : coupling.Exchange or None
+        Between the two; None where the liquid does not feel the solids.
     step : int
         Coupling steps since the start, the one under way included.
     time : float
         Time at the end of that step [s].
-    liquid_velocity : (n, 3) float64 ndarray
-        Liquid at the solids [m/s].
+    liquid_velocity, liquid_acceleration : (n, 3) float64 ndarray
+        Liquid at the solids [m/s], and how it changes, drag apart [m/s2].
     void_fraction : (n,) float64 ndarray
         Share of liquid around the solids [-].
     drag_rate : (n,) float64 ndarray
         Drag on a solid over its mass and its slip [1/s].
-    clipped : int
-        Void fractions that were raised to the floor, since the start.
+    begun_at : (n, 3) float64 ndarray
+        Where the solids were when the step of the liquid began [m].
+    mean_velocity : (n, 3) float64 ndarray
+        Of the solids in it, so far: each turn has its share of the whole step [m/s].
+    mean_drag : (n,) float64 ndarray
+        Drag over slip in it, likewise [kg/s].
+    impulse : (n, 3) float64 ndarray
+        Of the liquid on each solid in it, so far [N s].
+    clipped, liquid_clipped : int
+        Void fractions at solids and in the liquid that were raised to the floor, since the start.
+    outside, judged : int
+        Drags outside the range of their law, and all drags, since the start.
+    exchange_error : float
+        Largest difference of what solids and liquid gave each other, over what they gave [-].
+    volume_error : float
+        Largest error of the liquid's volume, over that volume [-].
     drag_impulse : (3,) float64 ndarray
         Momentum that the drag has given to all solids since the start [N s].
     largest_overlap : float
@@ -84,12 +100,23 @@ class State:
 
     population: dem.Solids | None = None
     liquid: Liquid | None = None
+    exchange: coupling.Exchange | None = None
     step: int = 0
     time: float = 0.0
     liquid_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    liquid_acceleration: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     void_fraction: FloatArray = field(default_factory=lambda: np.zeros(0))
     drag_rate: FloatArray = field(default_factory=lambda: np.zeros(0))
+    begun_at: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    mean_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    mean_drag: FloatArray = field(default_factory=lambda: np.zeros(0))
+    impulse: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     clipped: int = 0
+    liquid_clipped: int = 0
+    outside: int = 0
+    judged: int = 0
+    exchange_error: float = 0.0
+    volume_error: float = 0.0
     drag_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     largest_overlap: float = 0.0
     frame_time: float = 0.0
@@ -101,6 +128,13 @@ class State:
         """The solids, for the stages that need some."""
         assert self.population is not None
         return self.population
+
+    @property
+    def partners(self) -> tuple[ComputedLiquid, coupling.Exchange]:
+        """Liquid and exchange, for the stages that need both."""
+        assert isinstance(self.liquid, ComputedLiquid)
+        assert self.exchange is not None
+        return self.liquid, self.exchange
 
 
 class Stage(Protocol):
@@ -117,20 +151,36 @@ class AdvanceLiquid:
 
     name: ClassVar[str] = "AdvanceLiquid"
     turns: int  # coupling steps to a step of the liquid, which is taken at the last of them
+    held: bool = False  # whether the solids stay where they are
 
     def __call__(self, state: State, dt: float) -> None:
         assert state.liquid is not None
         if state.step % self.turns:
             return
-        state.liquid.advance(self.turns * dt)
+        if state.exchange is None:
+            state.liquid.advance(self.turns * dt)
+        else:
+            self._with_solids(state, self.turns * dt)
         if not state.liquid.sound:
+            remedy = "a smaller fidelity.courant; then another fidelity.particle_spacing"
+            if state.exchange is not None:
+                remedy = f"a smaller fidelity.liquid_step or a larger smoothing_radius; {remedy}"
             raise SimulationDiverged(
                 step=state.step,
                 time=state.time,
                 field="pressure or velocity",
                 solid=None,
-                remedy="a smaller fidelity.courant; then another fidelity.particle_spacing",
+                remedy=remedy,
             )
+
+    def _with_solids(self, state: State, dt: float) -> None:
+        liquid, exchange = state.partners
+        liquid.advance(dt, exchange)
+        state.liquid_clipped += exchange.clipped
+        state.exchange_error = max(state.exchange_error, exchange.mismatch)
+        state.volume_error = max(state.volume_error, abs(exchange.liquid_volume_error))
+        if self.held:
+            state.drag_impulse = state.drag_impulse + exchange.impulse.sum(axis=0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,6 +192,35 @@ class SampleLiquid:
     def __call__(self, state: State, _dt: float) -> None:
         assert state.liquid is not None
         state.liquid_velocity = state.liquid.velocity_at(state.solids.position)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeginExchange:
+    """Find the liquid around each solid, and its velocity, where a step of the liquid begins.
+
+    In later turns of that step it is the solids that know how the liquid around them has changed.
+    """
+
+    name: ClassVar[str] = "SampleLiquid"
+    turns: int
+
+    def __call__(self, state: State, _dt: float) -> None:
+        if state.step > 0 and (state.step - 1) % self.turns:
+            return
+        _, exchange = state.partners
+        state.begun_at = state.solids.position
+        begin_exchange(state)
+        state.liquid_velocity = exchange.liquid_velocity
+        state.liquid_acceleration = exchange.liquid_acceleration
+        state.mean_velocity = np.zeros_like(state.begun_at)
+        state.mean_drag = np.zeros(len(state.begun_at))
+        state.impulse = np.zeros_like(state.begun_at)
+
+
+def begin_exchange(state: State) -> None:
+    """Let the exchange begin from what the state holds: anew in a run that is resumed."""
+    liquid, exchange = state.partners
+    exchange.begin(liquid.core, position=state.begun_at, radius=state.solids.radius)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,6 +251,15 @@ class DragForce:
 
     def __call__(self, state: State, _dt: float) -> None:
         solids = state.solids
+        state.judged += len(solids)
+        state.outside += coupling.count_outside(
+            self.law,
+            liquid_velocity=state.liquid_velocity,
+            velocity=solids.velocity,
+            void_fraction=state.void_fraction,
+            diameter=2 * solids.radius,
+            kinematic_viscosity=self.kinematic_viscosity,
+        )
         state.drag_rate = coupling.drag_rate(
             self.law,
             liquid_velocity=state.liquid_velocity,
@@ -198,17 +286,63 @@ class AdvanceSolids:
         solids = state.solids
         if self.dry:
             solids.set_forcing(acceleration=self.acceleration)
-        else:
+        elif state.exchange is None:
             solids.set_forcing(
                 acceleration=self.acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
             )
+        else:
+            solids.set_forcing(
+                acceleration=self.acceleration,
+                liquid_velocity=state.liquid_velocity,
+                drag_rate=state.drag_rate,
+                liquid_acceleration=state.liquid_acceleration,
+                relaxation=state.exchange.relaxation(drag_rate=state.drag_rate, mass=solids.mass),
+            )
         report = solids.advance(dt / self.substeps, self.substeps)
         if not report.finite:
             check(state, self.pipe_radius)
+        if state.exchange is not None:
+            state.liquid_velocity = solids.liquid_velocity
         state.drag_impulse = state.drag_impulse + solids.drag_impulse.sum(axis=0)
         state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoldSolids:
+    """Count what the drag gives to solids that stay where they are."""
+
+    name: ClassVar[str] = "HoldSolids"
+
+    def __call__(self, state: State, dt: float) -> None:
+        drag = state.solids.mass * state.drag_rate
+        state.drag_impulse = state.drag_impulse + dt * (drag @ state.liquid_velocity)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExchangeMomentum:
+    """Sum up what the liquid gave to the solids, for it to get back in its step."""
+
+    name: ClassVar[str] = "ExchangeMomentum"
+    turns: int
+    held: bool
+
+    def __call__(self, state: State, _dt: float) -> None:
+        solids, (_, exchange) = state.solids, state.partners
+        state.mean_drag = state.mean_drag + solids.mass * state.drag_rate / self.turns
+        if not self.held:
+            state.mean_velocity = state.mean_velocity + solids.mean_velocity / self.turns
+            state.impulse = state.impulse + solids.drag_impulse
+        if state.step % self.turns:
+            return
+        exchange.give(
+            position=state.begun_at,
+            mean_velocity=state.mean_velocity,
+            drag=state.mean_drag,
+            impulse=state.impulse,
+            held=self.held,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -235,8 +369,10 @@ class Record:
         if state.liquid is not None:
             bore = math.pi * self.pipe_radius**2 * self.pipe_length
             liquid, of_liquid = state.liquid.frame()
-            gradient = np.add(of_liquid["pressure_gradient"], drag[0] / bore)
-            diagnostics |= {**of_liquid, "pressure_gradient": gradient}
+            diagnostics |= of_liquid
+            if state.exchange is None:  # a liquid that feels them spends it on the solids too
+                gradient = np.add(of_liquid["pressure_gradient"], drag[0] / bore)
+                diagnostics["pressure_gradient"] = gradient
         self.writer.append(state.time, solids=solids, liquid=liquid, diagnostics=diagnostics)
         state.frame_time = state.time
         state.largest_overlap = 0.0
@@ -333,8 +469,19 @@ def build_state(case: Case, plan: Plan) -> State:
         period=case.pipe.length,
         threads=plan.threads,
     )
-    # Where no stage looks for neighbors, a solid is taken to be alone.
-    return State(population=population, liquid=liquid, void_fraction=np.ones(count))
+    exchange = None
+    if plan.two_way:
+        exchange = coupling.Exchange(
+            smoothing_radius=plan.smoothing_radius,
+            pipe_radius=case.pipe.radius,
+            threads=plan.threads,
+        )
+    return State(
+        population=population,
+        liquid=liquid,
+        exchange=exchange,
+        void_fraction=np.ones(count),  # where no stage looks for neighbors, a solid is alone
+    )
 
 
 def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stage]:
@@ -342,10 +489,12 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
     pipe = case.pipe
     for planned in plan.stages:
         match planned.name, case.solids, case.liquid:
-            case "AdvanceLiquid", _, _:
-                yield AdvanceLiquid(turns=plan.turns_per_liquid_step)
+            case "AdvanceLiquid", solids, _:
+                held = solids is not None and solids.held
+                yield AdvanceLiquid(turns=plan.turns_per_liquid_step, held=held)
             case "SampleLiquid", _, _:
-                yield SampleLiquid()
+                turns = plan.turns_per_liquid_step
+                yield BeginExchange(turns=turns) if plan.two_way else SampleLiquid()
             case "FindVoidFraction", _, _:
                 average = coupling.VoidFraction(
                     pipe_radius=pipe.radius,
@@ -368,6 +517,10 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     dry=liquid is None,
                     pipe_radius=pipe.radius,
                 )
+            case "HoldSolids", _, _:
+                yield HoldSolids()
+            case "ExchangeMomentum", Solids() as solids, _:
+                yield ExchangeMomentum(turns=plan.turns_per_liquid_step, held=solids.held)
             case "Record", _, _:
                 yield Record(
                     writer=writer,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mpsdem._core import mps
+from mpsdem._core import coupling, mps
 from mpsdem.geometry import Kind, NodeLayout
 from mpsdem.liquids.bins import bin_means, section_count
 from mpsdem.liquids.protocol import FloatArray, Stored
@@ -52,8 +52,13 @@ class NodeLiquid:
     sound: bool = True
     tally: NodeTally = field(default_factory=NodeTally)
 
-    def advance(self, dt: float) -> None:
-        report = self.nodes.advance(dt)
+    @property
+    def core(self) -> mps.EulerianLiquid:
+        return self.nodes
+
+    def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
+        load = {} if exchange is None else {"exchange": exchange}
+        report = self.nodes.advance(dt, **load)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt

@@ -37,9 +37,11 @@ from mpsdem.simulation.watch import (
 from mpsdem.stages import (
     AdvanceLiquid,
     AdvanceSolids,
+    ExchangeMomentum,
     SimulationDiverged,
     Stage,
     State,
+    begin_exchange,
     build_stages,
     build_state,
     check,
@@ -195,7 +197,7 @@ class Simulation:
     def _begin(self, stages: Sequence[Stage], state: State, stopwatch: Stopwatch) -> None:
         """Record what there is before anything has moved."""
         for stage in stages:
-            if not isinstance(stage, AdvanceLiquid | AdvanceSolids):
+            if not isinstance(stage, AdvanceLiquid | AdvanceSolids | ExchangeMomentum):
                 stage(state, 0.0)
         self._write_checkpoint(state, stopwatch)
 
@@ -221,13 +223,16 @@ class Simulation:
             ) from None
         for name, value in checkpoint.state["stages"].items():
             setattr(state, name, value)
+        if state.exchange is not None:
+            begin_exchange(state)
         LOG.info("resumed at %g s", state.time)
         writer = ResultsWriter.reopen(self.directory, time=state.time)
         return state, writer, Stopwatch(**checkpoint.state["spent"])
 
     def _write_checkpoint(self, state: State, stopwatch: Stopwatch) -> None:
         check(state, self.case.pipe.radius)
-        kept = {f.name for f in fields(State)} - {"population", "liquid", "step", "time"}
+        parts = {"population", "liquid", "exchange"}  # which keep their own state, or need none
+        kept = {f.name for f in fields(State)} - parts - {"step", "time"}
         write_checkpoint(
             self.directory / "checkpoint.h5",
             case_toml=self.case.to_toml(),
@@ -257,7 +262,11 @@ def _slug(title: str) -> str:
 def _log_plan(plan: Plan) -> None:
     for stage in plan.stages:
         LOG.info("%s: %s", stage.name, stage.reason)
-    for name, step in (("solid", plan.solid_step), ("coupling", plan.coupling_step)):
+    for name, step in (
+        ("solid", plan.solid_step),
+        ("coupling", plan.coupling_step),
+        ("liquid", plan.liquid_step),
+    ):
         if step is not None:
             LOG.info("%s step %.4g s, bound by %s", name, step.value, step.binding.name)
     for warning in plan.warnings:
