@@ -168,7 +168,7 @@ class ParticleLiquid:
         diagnostics: dict[str, ArrayLike] = {
             "bulk_velocity": particles.bulk_velocity,
             "pressure_gradient": gradient,
-            "liquid_friction": tally.friction / time,
+            "pressure_gradient_friction": tally.friction / time,
             "liquid_unexplained": tally.unexplained / time,
             "pressure_iterations": tally.iterations / max(1, tally.substeps),
             "pressure_residual": tally.residual,

@@ -38,6 +38,7 @@ from mpsdem.plan.scales import (
     spring_stiffness,
     terminal_velocity,
     turbulence,
+    wet_restitution,
 )
 
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
@@ -242,7 +243,11 @@ def _numbers(case: Case) -> Iterator[Number]:
         meaning="solids lag the liquid" if stokes > 0.1 else "solids follow the liquid",
     )
     if not solids.held:
-        damped = "the liquid between damps them" if has_lubrication(case) else "as if dry"
+        damped = (
+            f"the liquid between leaves {wet_restitution(case):.2g} of the restitution"
+            if has_lubrication(case)
+            else "they rebound as if dry"
+        )
         yield Number(
             name="Stokes number of impacts", value=impact_stokes(case), unit="", meaning=damped
         )

@@ -30,18 +30,20 @@ DILUTE = 1e-3
 # Density of the solids over that of the liquid below which half the liquid they displace, as much
 # as a sphere carries along, is more than a quarter of their own mass [-].
 _LIGHT = 2.0
-# Stokes number of an impact below which the liquid between takes a third and more of the rebound
-# [-]; Legendre et al. (2005), doi:10.1063/1.2010527: exp(-35 / St) of the dry restitution.
-_VISCOUS = 100.0
+# An impact in liquid returns exp(-35 / St) of the dry restitution: two thirds at a Stokes number of
+# 100, nothing below 10. Legendre et al. (2005), doi:10.1063/1.2010527.
+_VISCOUS, _DAMPING = 100.0, 35.0  # [-]
+_LEAST_RESTITUTION = 0.01  # [-] of the dry one: no contact law returns nothing
 
 
 def materials(case: Case) -> tuple[Material, Material]:
-    """Material of the solids and of the wall, softened by the stiffness factor."""
-    solids = solids_of(case)
+    """Material of the solids and of the wall, softened by the stiffness factor, in the liquid."""
+    solids, wet = solids_of(case), wet_restitution(case)
 
     def softened(material: Material) -> Material:
         values = material.model_dump(include=set(Material.model_fields))
         values["youngs_modulus"] *= case.fidelity.stiffness_factor
+        values["restitution"] *= wet
         return Material(**values)
 
     return softened(solids), softened(solids.at_wall)
@@ -241,6 +243,14 @@ def impact_stokes(case: Case) -> float:
         return math.inf
     speed = impact_speed(case)
     return density_ratio(case) * speed * mean_diameter(solids) / (9 * liquid.kinematic_viscosity)
+
+
+def wet_restitution(case: Case) -> float:
+    """Restitution of the hardest impacts to expect, over that without liquid [-]."""
+    if not has_lubrication(case):
+        return 1.0
+    stokes = impact_stokes(case)
+    return max(math.exp(-_DAMPING / stokes) if stokes > 0 else 0.0, _LEAST_RESTITUTION)
 
 
 def has_lubrication(case: Case) -> bool:

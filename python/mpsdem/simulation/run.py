@@ -13,6 +13,7 @@ import numpy as np
 
 from mpsdem.case import Case, load_case
 from mpsdem.info import provenance
+from mpsdem.liquids import section_count
 from mpsdem.plan import Plan, make_plan
 from mpsdem.results import (
     CheckpointError,
@@ -185,7 +186,13 @@ class Simulation:
         solids, liquid = {}, {} if state.liquid is None else state.liquid.static_fields()
         if self.case.solids is not None:
             radius = state.solids.radius
-            solids = {"radius": radius, "density": np.full_like(radius, self.case.solids.density)}
+            pipe = self.case.pipe
+            sections = section_count(pipe.radius, pipe.length)
+            solids = {
+                "radius": radius,
+                "density": np.full_like(radius, self.case.solids.density),
+                "section_position": (np.arange(sections) + 0.5) * (pipe.length / sections),
+            }
         return ResultsWriter(
             self.directory,
             case=self.case,

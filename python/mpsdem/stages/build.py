@@ -36,6 +36,8 @@ from mpsdem.stages.steps import (
     SampleLiquid,
 )
 
+ADDED_MASS = 0.5  # [-] of a sphere, over the mass of the liquid that it displaces
+
 ContactLaw = dem.LinearSpring | dem.HertzMindlin | dem.HertzViscoelastic
 
 
@@ -53,7 +55,7 @@ def build_state(case: Case, plan: Plan) -> State:
         velocity=placement.velocity,
         spin=placement.spin,
         radius=placement.radius,
-        density=np.full(count, solids.density),
+        density=np.full(count, _inertia(case, plan)),
         pair_law=pair_law,
         wall_law=wall_law,
         pair_rolling_friction=solids.rolling_friction,
@@ -98,14 +100,17 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
             case "DragForce", Solids() as solids, scene.Liquid() as liquid:
                 yield DragForce(
                     law=DRAG_LAWS[solids.drag](),
-                    solid_density=np.full(case.solids_count, solids.density),
+                    inertia=np.full(case.solids_count, _inertia(case, plan)),
                     liquid_density=liquid.density,
                     kinematic_viscosity=liquid.kinematic_viscosity,
                 )
             case "AdvanceSolids", Solids() as solids, liquid:
-                lightness = 1 - (liquid.density if liquid else 0.0) / solids.density
+                inertia, displaced = _inertia(case, plan), liquid.density if liquid else 0.0
+                fall = (solids.density - displaced) / inertia * gravity(case)
                 yield AdvanceSolids(
-                    acceleration=np.tile(lightness * gravity(case), (case.solids_count, 1)),
+                    acceleration=np.tile(fall, (case.solids_count, 1)),
+                    displaced=displaced / inertia if plan.added_mass else 0.0,
+                    added_mass=ADDED_MASS,
                     substeps=plan.clock.substeps,
                     dry=liquid is None,
                     pipe_radius=pipe.radius,
@@ -118,9 +123,18 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                 yield Record(
                     writer=writer,
                     steps_per_frame=plan.clock.steps_per_frame,
-                    pipe_radius=pipe.radius,
-                    pipe_length=pipe.length,
+                    pipe=pipe,
+                    gravity=gravity(case),
+                    solids_density=case.solids.density if case.solids else 0.0,
+                    liquid_density=case.liquid.density if case.liquid else 0.0,
                 )
+
+
+def _inertia(case: Case, plan: Plan) -> float:
+    """Mass that a force on a solid moves, the liquid it carries along included [kg/m3]."""
+    assert case.solids is not None
+    carried = ADDED_MASS * case.liquid.density if plan.added_mass and case.liquid else 0.0
+    return case.solids.density + carried
 
 
 def _contact_laws(case: Case, speed: float) -> tuple[ContactLaw, ContactLaw]:

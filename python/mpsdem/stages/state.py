@@ -56,24 +56,27 @@ class State:
         Of the solids in it, so far: each turn has its share of the whole step [m/s].
     mean_drag : (n,) float64 ndarray
         Drag over slip in it, likewise [kg/s].
-    impulse : (n, 3) float64 ndarray
-        Of the liquid on each solid in it, so far [N s].
-    clipped, liquid_clipped : int
-        Void fractions at solids and in the liquid that were raised to the floor, since the start.
-    outside, judged : int
-        Drags outside the range of their law, and all drags, since the start.
-    exchange_error : float
-        Largest difference of what solids and liquid gave each other, over what they gave [-].
-    volume_error : float
-        Largest error of the liquid's volume, over that volume [-].
+    turn_impulse, impulse : (n, 3) float64 ndarray
+        Of the liquid on each solid in the last turn, and in the liquid's step so far [N s].
     drag_impulse : (3,) float64 ndarray
-        Momentum that the drag has given to all solids since the start [N s].
+        Momentum that the liquid has given to all solids since the start, buoyancy apart [N s].
     largest_overlap : float
         Over the radius, since the last frame [-].
+    void_fraction_clipped, liquid_void_fraction_clipped : int
+        Void fractions raised to the floor since then, at solids and in the liquid.
+    drags, drags_outside : int
+        Drags found since then, and those of them outside the range of their law.
+    exchange_error : float
+        Largest difference since then of what solids and liquid gave each other, over what they
+        gave [-].
+    liquid_volume_error : float
+        Largest error since then of the liquid's volume, over that volume [-].
     frame_time : float
         Time of the last frame [s].
     frame_drag_impulse, frame_wall_impulse : (3,) float64 ndarray
-        Momentum that drag and walls had given to all solids by then [N s].
+        Momentum that liquid and walls had given to all solids by then [N s].
+    frame_energy, frame_flux : float
+        Energy [J] and volume flux along the pipe [m/s] then.
     """
 
     population: dem.Solids | None = None
@@ -88,18 +91,21 @@ class State:
     begun_at: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     mean_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     mean_drag: FloatArray = field(default_factory=lambda: np.zeros(0))
+    turn_impulse: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     impulse: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
-    clipped: int = 0
-    liquid_clipped: int = 0
-    outside: int = 0
-    judged: int = 0
-    exchange_error: float = 0.0
-    volume_error: float = 0.0
     drag_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     largest_overlap: float = 0.0
+    void_fraction_clipped: int = 0
+    liquid_void_fraction_clipped: int = 0
+    drags: int = 0
+    drags_outside: int = 0
+    exchange_error: float = 0.0
+    liquid_volume_error: float = 0.0
     frame_time: float = 0.0
     frame_drag_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     frame_wall_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
+    frame_energy: float = 0.0
+    frame_flux: float = 0.0
 
     @property
     def solids(self) -> dem.Solids:

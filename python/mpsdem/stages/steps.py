@@ -43,9 +43,10 @@ class AdvanceLiquid:
     def _with_solids(self, state: State, dt: float) -> None:
         liquid, exchange = state.partners
         liquid.advance(dt, exchange)
-        state.liquid_clipped += exchange.clipped
+        state.liquid_void_fraction_clipped += exchange.clipped
         state.exchange_error = max(state.exchange_error, exchange.mismatch)
-        state.volume_error = max(state.volume_error, abs(exchange.liquid_volume_error))
+        volume_error = abs(exchange.liquid_volume_error)
+        state.liquid_volume_error = max(state.liquid_volume_error, volume_error)
         if self.held:
             state.drag_impulse = state.drag_impulse + exchange.impulse.sum(axis=0)
 
@@ -103,7 +104,7 @@ class FindVoidFraction:
         state.void_fraction, clipped = self.average.at_solids(
             position=solids.position, radius=solids.radius, threads=self.threads
         )
-        state.clipped += clipped
+        state.void_fraction_clipped += clipped
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,14 +113,14 @@ class DragForce:
 
     name: ClassVar[str] = "DragForce"
     law: DragLaw
-    solid_density: FloatArray
+    inertia: FloatArray  # (n,) over the volume of a solid [kg/m3]
     liquid_density: float
     kinematic_viscosity: float
 
     def __call__(self, state: State, _dt: float) -> None:
         solids = state.solids
-        state.judged += len(solids)
-        state.outside += coupling.count_outside(
+        state.drags += len(solids)
+        state.drags_outside += coupling.count_outside(
             self.law,
             liquid_velocity=state.liquid_velocity,
             velocity=solids.velocity,
@@ -133,7 +134,7 @@ class DragForce:
             velocity=solids.velocity,
             void_fraction=state.void_fraction,
             diameter=2 * solids.radius,
-            density=self.solid_density,
+            density=self.inertia,
             liquid_density=self.liquid_density,
             kinematic_viscosity=self.kinematic_viscosity,
         )
@@ -141,39 +142,60 @@ class DragForce:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdvanceSolids:
-    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps."""
+    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps.
+
+    With added mass, the solids' inertia is m + C M, with M the mass of the liquid that they
+    displace, and the liquid's own acceleration b moves them by (1 + C) M b: the added mass and the
+    pressure that accelerates the liquid, Maxey & Riley (1983), doi:10.1063/1.864230.
+    """
 
     name: ClassVar[str] = "AdvanceSolids"
     acceleration: FloatArray  # (n, 3), gravity less buoyancy [m/s2]
+    displaced: float  # M / (m + C M), 0 without added mass [-]
+    added_mass: float  # C [-]
     substeps: int
     dry: bool
     pipe_radius: float
 
     def __call__(self, state: State, dt: float) -> None:
+        solids, before = state.solids, state.solids.velocity
+        acceleration = self.acceleration
+        if state.exchange is not None:
+            # its change by the drag of the solids is no acceleration of the liquid far from them
+            share = (1 + self.added_mass) * self.displaced
+            acceleration = acceleration + share * state.liquid_acceleration
+        self._force(state, acceleration)
+        report = solids.advance(dt / self.substeps, self.substeps)
+        if not report.finite:
+            check(state, self.pipe_radius)
+        state.turn_impulse = solids.drag_impulse
+        if self.displaced:
+            gain = dt * (acceleration - self.acceleration)
+            gain -= self.added_mass * self.displaced * (solids.velocity - before)
+            state.turn_impulse = state.turn_impulse + solids.mass[:, None] * gain
+        if state.exchange is not None:
+            state.liquid_velocity = solids.liquid_velocity
+        state.drag_impulse = state.drag_impulse + state.turn_impulse.sum(axis=0)
+        state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
+
+    def _force(self, state: State, acceleration: FloatArray) -> None:
         solids = state.solids
         if self.dry:
-            solids.set_forcing(acceleration=self.acceleration)
+            solids.set_forcing(acceleration=acceleration)
         elif state.exchange is None:
             solids.set_forcing(
-                acceleration=self.acceleration,
+                acceleration=acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
             )
         else:
             solids.set_forcing(
-                acceleration=self.acceleration,
+                acceleration=acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
                 liquid_acceleration=state.liquid_acceleration,
                 relaxation=state.exchange.relaxation(drag_rate=state.drag_rate, mass=solids.mass),
             )
-        report = solids.advance(dt / self.substeps, self.substeps)
-        if not report.finite:
-            check(state, self.pipe_radius)
-        if state.exchange is not None:
-            state.liquid_velocity = solids.liquid_velocity
-        state.drag_impulse = state.drag_impulse + solids.drag_impulse.sum(axis=0)
-        state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,7 +222,7 @@ class ExchangeMomentum:
         state.mean_drag = state.mean_drag + solids.mass * state.drag_rate / self.turns
         if not self.held:
             state.mean_velocity = state.mean_velocity + solids.mean_velocity / self.turns
-            state.impulse = state.impulse + solids.drag_impulse
+            state.impulse = state.impulse + state.turn_impulse
         if state.step % self.turns:
             return
         exchange.give(
