@@ -11,10 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mpsdem import Simulation, SimulationInterrupted
+from mpsdem._core import coupling
 from mpsdem.case import Case
 from mpsdem.simulation import run as time_loop
 
-WATER = {"density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0}
+WATER = {
+    "model": "profile",
+    "density": 1000.0,
+    "kinematic_viscosity": 1e-6,
+    "bulk_velocity": 1.0,
+}
 SOLIDS = {
     "diameter": {"kind": "uniform", "smallest": 0.008, "largest": 0.012},
     "density": 2700.0,
@@ -27,14 +33,14 @@ SPRING = {"contact": "linear_spring"}
 ROLLING = {"rolling_friction": 0.05, "wall": {"rolling_friction": 0.1, "friction": 0.6}}
 
 
-def case(*, liquid=None, solids=()):
+def case(*, liquid=None, solids=(), coupling="one-way"):
     """Solids thrown at the wall of a short pipe; the last frame stands at an odd time."""
     return Case(
         end_time=0.11,
         pipe={"radius": 0.05, "length": 0.4},
         liquid=liquid,
         solids=SOLIDS | dict(solids),
-        fidelity={"level": "quick", "coupling_step": 0.002},
+        fidelity={"level": "quick", "coupling_step": 0.002, "coupling": coupling},
         output={"every": 0.02, "figures": False},
     )
 
@@ -51,6 +57,16 @@ CASES = {
     "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),
     "eulerian": case(liquid=WATER | {"model": "eulerian"}),
     "clear liquid, eulerian": case(liquid=WATER | {"model": "eulerian"}).with_(solids=None),
+    "lagrangian, two-way": case(liquid=WATER | {"model": "lagrangian"}, coupling="two-way"),
+    "eulerian, two-way": case(liquid=WATER | {"model": "eulerian"}, coupling="two-way"),
+    "eulerian, two-way, light solids": case(
+        liquid=WATER | {"model": "eulerian"}, solids={"density": 1200.0}, coupling="two-way"
+    ),
+    "eulerian, held solids": case(
+        liquid=WATER | {"model": "eulerian"},
+        solids={"held": True, "arrangement": {"kind": "random"}},
+        coupling="two-way",
+    ),
     "push plate": case(liquid=WATER | {"model": "lagrangian"}).with_(
         pipe={"ends": "push-plate", "stroke": 0.05}
     ),
@@ -96,6 +112,8 @@ def contents(results):
 
 @pytest.fixture(scope="module", params=CASES)
 def undisturbed(request, tmp_path_factory):
+    if CASES[request.param].fidelity.coupling == "two-way" and not hasattr(coupling, "Exchange"):
+        pytest.skip("this build has no exchange")
     directory = tmp_path_factory.mktemp("whole")
     with Simulation(CASES[request.param], directory).run() as results:
         return CASES[request.param], contents(results)

@@ -57,11 +57,13 @@ class Nodes(mps.EulerianLiquid):
 
 
 class Solids(dem.Solids):
-    def set_forcing(self, *, acceleration, liquid_velocity, drag_rate, **_more):
-        self.liquid_velocity = liquid_velocity
-        super().set_forcing(
-            acceleration=acceleration, liquid_velocity=liquid_velocity, drag_rate=drag_rate
-        )
+    liquid_velocity = mean_velocity = None
+
+    def set_forcing(self, **parts):
+        self.forced = parts
+        self.liquid_velocity = parts.get("liquid_velocity")
+        plain = ("acceleration", "liquid_velocity", "drag_rate")
+        super().set_forcing(**{name: parts[name] for name in plain if name in parts})
 
     def advance(self, dt, steps):
         before = self.velocity

@@ -24,6 +24,7 @@ end_time = 0.1
 radius = 0.05
 length = "50 cm"
 [liquid]
+model = "profile"
 density = 1000.0
 kinematic_viscosity = 1e-6
 bulk_velocity = 1.0

@@ -10,7 +10,7 @@ from mpsdem.case import Case, CaseError
 from mpsdem.contacts import Impact, Stiffness
 from mpsdem.plan import Clock, impacts, make_plan, spring_stiffness, terminal_velocity
 
-WATER = {"density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0}
+WATER = {"model": "profile", "density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0}
 NODULES = {
     "diameter": 0.02,
     "density": 2700.0,

@@ -11,7 +11,12 @@ from mpsdem import Results, Simulation, SimulationDiverged
 from mpsdem.case import Case
 from mpsdem.results import SUMMARY_KEYS, CheckpointError, DirectoryLock, LockError, OutputError
 
-WATER = {"density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0}
+WATER = {
+    "model": "profile",
+    "density": 1000.0,
+    "kinematic_viscosity": 1e-6,
+    "bulk_velocity": 1.0,
+}
 BEADS = {
     "diameter": 0.01,
     "density": 2500.0,

@@ -22,7 +22,8 @@ class Liquid(Part):
     kinematic_viscosity : float
         Kinematic viscosity [m2/s].
     bulk_velocity : float
-        Flow rate over the area of the bore, positive towards the outlet [m/s].
+        Flow rate over the area of the bore, positive towards the outlet [m/s]; that of liquid and
+        solids where the liquid feels them.
     pressure_gradient : float, optional
         Loss of pressure along the pipe that drives a computed liquid [Pa/m]; by default the one
         that holds the bulk velocity. Where given, ``bulk_velocity`` is that of the start.

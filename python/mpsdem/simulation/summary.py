@@ -242,21 +242,24 @@ def _momentum_errors(plan: Plan, state: State, results: Results) -> Iterator[flo
 
 
 def _liquid_momentum_error(plan: Plan, results: Results) -> float | None:
-    """Axial: what the liquid gained, less what gradient, walls and solids gave it."""
-    liquid, numbers = plan.case.liquid, results.diagnostics
+    """Axial impulse on the liquid that nothing explains, over that of friction, if any."""
+    liquid, numbers, interval = plan.case.liquid, results.diagnostics, np.diff(results.time)
     assert liquid is not None
-    flux = numbers["bulk_velocity"]
-    if plan.two_way:  # it holds the solids too
-        flux = flux - _concentration(plan, results) * numbers["solids_mean_velocity"]
-    interval = np.diff(results.time)
 
-    def impulse(name: str) -> Any:
-        return numbers[name][1:] @ interval
+    def impulse(name: str) -> float:
+        return float(numbers[name][1:] @ interval)
 
-    given = impulse("pressure_gradient") - impulse("pressure_gradient_solids")
     friction = impulse("pressure_gradient_friction")
-    unexplained = liquid.density * (flux[-1] - flux[0]) - given + friction
-    return float(abs(unexplained / friction)) if friction != 0 else None
+    if plan.liquid_model == "eulerian":
+        # its bulk velocity holds that of the wall's nodes, which no force changes
+        unexplained = impulse("liquid_unexplained")
+    else:
+        flux = numbers["bulk_velocity"]
+        if plan.two_way:  # it holds the solids too
+            flux = flux - _concentration(plan, results) * numbers["solids_mean_velocity"]
+        given = impulse("pressure_gradient") - impulse("pressure_gradient_solids")
+        unexplained = liquid.density * float(flux[-1] - flux[0]) - given + friction
+    return abs(unexplained / friction) if friction != 0 else None
 
 
 def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float | None:
