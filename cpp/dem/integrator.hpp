@@ -10,14 +10,39 @@ namespace mpsdem::dem {
 ///
 /// k is the drag rate; its part k u of the force stands in `a`, so drag is implicit in v
 /// and stable for any k dt. Verlet: Swope et al. (1982) doi:10.1063/1.442716.
+///
+/// A liquid that responds is driven by b and relaxes to the solids at the rate L = k m / M, where M
+/// is the inertia [kg] of the liquid that one solid has to carry along. Both are implicit:
+///
+///   v = v' + dt k (u - v),  u = u' - dt L (u - v);   v' = v + dt (F/m + a),  u' = u + dt b
+///
+/// The difference is one equation for the slip r = u - v,
+///
+///   r = (u' - v') / (1 + dt (k + L)),   v = v' + dt k r,   u = u' - dt L r,
+///
+/// whose factor lies in (0, 1]: stable and without overshoot for any step. m v + M u changes by
+/// m (F/m + a) + M b alone.
 template <Medium medium>
 [[gnu::always_inline]] inline void kick(Population& p, std::size_t i, Real dt) noexcept {
     using P = Population;
     Real* const solid = p.at(P::X, i);
     const Real inverse_mass = solid[P::INVERSE_MASS];
     Lanes v = load(solid + P::VX) + dt * (inverse_mass * load(solid + P::FX) + load(solid + P::AX));
-    if constexpr (medium == Medium::liquid) {
-        v *= 1 / (1 + dt * *p.at(P::DRAG, i));
+    if constexpr (medium == Medium::liquid) v *= 1 / (1 + dt * *p.at(P::DRAG, i));
+    if constexpr (medium == Medium::responding_liquid) {
+        const Real k = *p.at(P::DRAG, i), relaxation = *p.at(P::RELAXATION, i);
+        Real *const liquid = p.at(P::UX, i), *const given = p.at(P::JX, i);
+        Lanes u = load(liquid) + dt * load(p.at(P::BX, i));
+        u[3] = 0; // rates travel there
+        const Lanes slip = (1 / (1 + dt * (k + relaxation))) * (u - v);
+        const Lanes gain = dt * k * slip;
+        v += gain;
+        u -= dt * relaxation * slip;
+        store(given, load(given) + gain);
+        u[3] = k;
+        store(liquid, u);
+    }
+    if constexpr (medium != Medium::dry) {
         Real* const moved = p.at(P::PX, i);
         store(moved, load(moved) + dt * v);
     }

@@ -178,11 +178,14 @@ class Solids:
         """
         Continue bit-equal from a `state` of the same population.
         """
-    def set_forcing(self, *, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, drag_rate: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None) -> None:
+    def set_forcing(self, *, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, drag_rate: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, liquid_acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, relaxation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None) -> None:
         """
-        From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v).
+        From now on dv/dt = F/m + acceleration + drag_rate (u - v), u = liquid_velocity.
         
-        Drag is implicit in v. Starts the sums of `drag_impulse` anew.
+        With the last two the liquid responds: du/dt = liquid_acceleration - relaxation (u - v), from
+        `liquid_velocity` on. Both are implicit in the slip u - v, together: stable for any step. The
+        liquid's inertia of each solid, drag_rate * mass / relaxation [kg], times u and the solid's mass
+        times v then keep their sum in the exchange. Starts `drag_impulse` and `mean_velocity` anew.
         
         Parameters
         ----------
@@ -191,7 +194,16 @@ class Solids:
         liquid_velocity : (n, 3) float64 ndarray, optional
             [m/s]; together with `drag_rate`.
         drag_rate : (n,) float64 ndarray, optional
-            [1/s].
+            [1/s], >= 0.
+        liquid_acceleration : (n, 3) float64 ndarray, optional
+            What else moves the liquid at each solid [m/s2]; together with `relaxation`.
+        relaxation : (n,) float64 ndarray, optional
+            Rate at which the liquid at each solid nears the solid's velocity [1/s], >= 0.
+        
+        Raises
+        ------
+        ValueError
+            A shape, a negative rate, or one of two that come together is missing.
         """
     def state(self) -> dict[str, typing.Any]:
         """
@@ -218,9 +230,19 @@ class Solids:
         (n,) times around the periodic axis.
         """
     @property
+    def liquid_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) of the liquid at each solid now [m/s]; in a liquid only.
+        """
+    @property
     def mass(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) [kg].
+        """
+    @property
+    def mean_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) mean over the time since set_forcing, as drag saw it [m/s]; in a liquid only.
         """
     @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
