@@ -40,6 +40,7 @@ public:
         BX = 36,         // [m/s2]  acceleration of the liquid, but for the solids' reaction
         RELAXATION = 39, // [1/s]
         JX = 40,         // [m/s]   what the liquid gave since forcing was set: impulse over mass
+        ADDED_MASS = 43, // [-]     over the solid's own
         response_end = 44
     };
     static constexpr std::size_t rest = rest_end - record, response = response_end - rest_end;

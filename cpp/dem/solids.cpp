@@ -106,7 +106,7 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
 
 void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
                          std::span<const Real> drag_rate, std::span<const Vec3> liquid_acceleration,
-                         std::span<const Real> relaxation) {
+                         std::span<const Real> relaxation, std::span<const Real> added_mass) {
     const std::size_t n = size();
     require(acceleration.size() == n, "set_forcing: acceleration must have shape (n, 3)");
     require(liquid_velocity.size() == drag_rate.size() &&
@@ -116,11 +116,15 @@ void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec
                 (relaxation.empty() || relaxation.size() == drag_rate.size()),
             "set_forcing: liquid_acceleration (n, 3) and relaxation (n,) come together, and with "
             "drag_rate");
+    require(added_mass.empty() || added_mass.size() == drag_rate.size(),
+            "set_forcing: added_mass (n,) comes with drag_rate");
     for (const Real k : drag_rate) require(!(k < 0), "set_forcing: drag_rate must be >= 0 1/s");
     for (const Real l : relaxation) require(!(l < 0), "set_forcing: relaxation must be >= 0 1/s");
-    medium_ = drag_rate.empty()    ? Medium::dry
-              : relaxation.empty() ? Medium::liquid
-                                   : Medium::responding_liquid;
+    for (const Real c : added_mass) require(!(c < 0), "set_forcing: added_mass must be >= 0");
+    // added mass needs the acceleration of the liquid, were it zero
+    medium_ = drag_rate.empty()                          ? Medium::dry
+              : relaxation.empty() && added_mass.empty() ? Medium::liquid
+                                                         : Medium::responding_liquid;
     const bool responds = medium_ == Medium::responding_liquid;
     if (responds) solids_.add_response();
     forcing_time_ = 0;
@@ -133,9 +137,10 @@ void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec
         *solids_.at(P::DRAG, i) = k;
         solids_.set(P::PX, i, {});
         if (!responds) continue;
-        solids_.set(P::BX, i, liquid_acceleration[id]);
-        *solids_.at(P::RELAXATION, i) = relaxation[id];
+        solids_.set(P::BX, i, relaxation.empty() ? Vec3{} : liquid_acceleration[id]);
+        *solids_.at(P::RELAXATION, i) = relaxation.empty() ? 0 : relaxation[id];
         solids_.set(P::JX, i, {});
+        *solids_.at(P::ADDED_MASS, i) = added_mass.empty() ? 0 : added_mass[id];
     }
 }
 
@@ -494,7 +499,8 @@ std::vector<Real> Solids::mass() const {
         [&](std::size_t i) { return 1 / *solids_.at(P::INVERSE_MASS, i); });
 }
 
-/// The sum over kicks of m k (u - v) dt, as each implicit kick applied it.
+/// The sum over kicks of m k (u - v) dt, as each implicit kick applied it, and of the part of added
+/// mass.
 std::vector<Vec3> Solids::drag_impulse() const {
     return in_callers_order<Vec3>([&](std::size_t i) {
         if (medium_ == Medium::responding_liquid)

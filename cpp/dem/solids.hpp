@@ -55,11 +55,12 @@ public:
 
     /// From now on dv/dt = F/m + acceleration + drag_rate (u - v), u = liquid_velocity. With the
     /// last two spans the liquid responds: du/dt = liquid_acceleration - relaxation (u - v), from
-    /// liquid_velocity on. Spans may be empty: no response, no drag. Starts `drag_impulse` and
+    /// liquid_velocity on. `added_mass` (over the solid's own) adds added_mass (du/dt - dv/dt) to
+    /// dv/dt. Spans may be empty: no added mass, no response, no drag. Starts `drag_impulse` and
     /// `mean_velocity` anew.
     void set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
                      std::span<const Real> drag_rate, std::span<const Vec3> liquid_acceleration,
-                     std::span<const Real> relaxation);
+                     std::span<const Real> relaxation, std::span<const Real> added_mass);
 
     /// `steps` steps of velocity Verlet of `dt` [s].
     AdvanceReport advance(Real dt, std::size_t steps);
@@ -71,7 +72,8 @@ public:
     [[nodiscard]] std::vector<Real> radius() const;   // [m]
     [[nodiscard]] std::vector<Real> mass() const;     // [kg]
     [[nodiscard]] std::vector<std::int64_t> laps() const;
-    [[nodiscard]] std::vector<Vec3> drag_impulse() const; // [N s] on each solid since set_forcing
+    /// Of drag and added mass on each solid since set_forcing [N s].
+    [[nodiscard]] std::vector<Vec3> drag_impulse() const;
     /// Mean of v over the kicks since set_forcing [m/s]; only in a liquid.
     [[nodiscard]] std::vector<Vec3> mean_velocity() const;
     [[nodiscard]] std::vector<Vec3> liquid_velocity() const; // [m/s] now, at each solid
