@@ -184,8 +184,15 @@ class Case(Part):
             yield from self._solids_that_do_not_fit(self.solids)
         if self.pipe.has_plate:
             yield from self._a_plate_without_its_liquid()
-        if self.liquid is not None and (self.liquid.computed or self.pipe.has_plate):
-            yield from self._particles_that_do_not_fit(self.liquid)
+        if self.fidelity.coupling == "two-way":
+            yield from self._a_coupling_that_cannot_be()
+        if self.solids is not None and self.solids.held and self.liquid is None:
+            rule, remedy = "without a liquid nothing moves", "add [liquid], or leave it out"
+            yield Problem(field="solids.held", value=True, rule=rule, remedy=remedy)
+        if self.liquid is not None and (
+            self.liquid.computed or self.pipe.has_plate or self.fidelity.coupling == "two-way"
+        ):
+            yield from self.spacing_problems()
         if self.output.every > self.end_time:
             yield Problem(
                 field="output.every",
@@ -247,9 +254,28 @@ class Case(Part):
                 rule=f"must be >= {2 * spacing:g} m, two particle spacings",
             )
 
-    def _particles_that_do_not_fit(self, liquid: Liquid) -> Iterable[Problem]:
+    def _a_coupling_that_cannot_be(self) -> Iterable[Problem]:
+        def problem(rule: str, remedy: str) -> Problem:
+            return Problem(field="fidelity.coupling", value="two-way", rule=rule, remedy=remedy)
+
+        if self.liquid is None or self.solids is None:
+            yield problem("needs [liquid] and [solids]", "leave it out")
+        elif self.liquid.model == "profile":
+            yield problem(
+                "a prescribed profile feels no solids",
+                "set liquid.model = 'eulerian' or 'lagrangian', or coupling = 'one-way'",
+            )
+        elif self.pipe.has_plate:
+            yield problem(
+                "a liquid that a push plate moves feels no solids",
+                "set pipe.ends = 'periodic', or coupling = 'one-way'",
+            )
+
+    def spacing_problems(self) -> Iterable[Problem]:
+        """Yield what keeps a computed liquid from fitting into the pipe."""
         spacing = self.fidelity.resolved_particle_spacing(self.pipe.radius)
-        across, share = (4, "a quarter") if liquid.model == "lagrangian" else (6, "a sixth")
+        particles = self.liquid is not None and self.liquid.model == "lagrangian"
+        across, share = (4, "a quarter") if particles else (6, "a sixth")
         widest = 2 * self.pipe.radius / across
         if spacing > widest:
             yield Problem(

@@ -30,7 +30,17 @@ class Fidelity(Part):
     stiffness_factor : float
         Multiplies every modulus and stiffness [-]; less than 1 buys larger steps with overlap.
     smoothing_radius : float, optional
-        Radius over which the void fraction is averaged [m]; by default 2.5 largest diameters.
+        Radius over which void fraction and exchange with the liquid are averaged [m]; by default
+        2.5 largest diameters, and at least 3 spacings of a computed liquid.
+    coupling : {"auto", "one-way", "two-way"}
+        Whether the liquid feels the solids. ``"auto"``: where it is computed, in a periodic pipe,
+        and the solids fill more than 0.001 of the bore; a prescribed profile never does.
+    added_mass : {"auto", "on", "off"}
+        Whether a solid carries half its volume of liquid along, and feels the pressure that
+        accelerates the liquid. ``"auto"``: where it is less than twice as dense as the liquid.
+    lubrication : {"auto", "on", "off"}
+        Whether the liquid between two solids damps their impact: it lowers the restitution, as
+        measured at the Stokes number of the impacts. ``"auto"``: where that is below 100.
     particle_spacing : float, optional
         Distance between the particles of a computed liquid [m]; by default 1/10, 1/16 or 1/24 of
         the bore. The layout takes the nearest that divides the radius.
@@ -66,6 +76,9 @@ class Fidelity(Part):
     coupling_step: Annotated[float, Quantity("s", above=0.0)] | None = None
     stiffness_factor: Annotated[float, Quantity(above=0.0, at_most=1.0)] = 1.0
     smoothing_radius: Annotated[float, Quantity("m", above=0.0)] | None = None
+    coupling: Literal["auto", "one-way", "two-way"] = "auto"
+    added_mass: Literal["auto", "on", "off"] = "auto"
+    lubrication: Literal["auto", "on", "off"] = "auto"
     particle_spacing: Annotated[float, Quantity("m", above=0.0)] | None = None
     courant: Annotated[float, Quantity(above=0.0, at_most=2.0)] = 0.8
     convection: Literal["upwind", "muscl"] = "upwind"

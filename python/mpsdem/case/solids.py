@@ -298,6 +298,8 @@ class Solids(Material):
         Of everything random at the start.
     relax : bool
         Push overlapping solids apart at the start, instead of refusing them.
+    held : bool
+        Whether they stay where they start, as a packed bed or a screen does.
     contact : {"hertz_mindlin", "linear_spring", "hertz_viscoelastic"}
         Contact law.
     wall : Wall
@@ -319,6 +321,7 @@ class Solids(Material):
     arrangement: Arrangement = Random()
     seed: Annotated[int, Whole(at_least=0)] = 0
     relax: bool = False
+    held: bool = False
     contact: Literal["hertz_mindlin", "linear_spring", "hertz_viscoelastic"] = "hertz_mindlin"
     wall: Wall = Wall()
     normal_stiffness: Annotated[float, Quantity("N/m", above=0.0)] | None = None
@@ -330,6 +333,13 @@ class Solids(Material):
 
     def problems(self) -> Iterable[Problem]:
         yield from self._wrong_number()
+        if self.held and self.starts_moving:
+            yield Problem(
+                field="held",
+                value=True,
+                rule="solids that are held start at rest",
+                remedy="leave the velocities and spins of the arrangement out, or held",
+            )
         if self.contact != "linear_spring":
             for name in (
                 "normal_stiffness",
@@ -363,6 +373,16 @@ class Solids(Material):
                 rule="a random arrangement takes either count or volume_fraction",
                 remedy="leave out one" if given else "give one, or another arrangement",
             )
+
+    @property
+    def starts_moving(self) -> bool:
+        """Whether the arrangement gives any solid a velocity or a spin."""
+        start = self.arrangement
+        if isinstance(start, List):
+            vectors = (*(start.velocities or ()), *(start.spins or ()))
+        else:
+            vectors = (start.velocity,)
+        return any(any(vector) for vector in vectors)
 
     @property
     def smallest_diameter(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mpsdem._core import mps
+from mpsdem._core import coupling, mps
 from mpsdem.geometry import Kind, NodeLayout
 from mpsdem.liquids.bins import bin_means, section_count
 from mpsdem.liquids.protocol import FloatArray, Stored
@@ -21,6 +22,8 @@ class NodeTally:
 
     time: float = 0.0  # [s]
     impulse: float = 0.0  # [Pa s/m] of the pressure gradient
+    friction: float = 0.0  # [Pa s/m] taken up by the walls
+    unexplained: float = 0.0  # [Pa s/m] what convection and pressure did along the pipe
     substeps: int = 0
     divergence: float = 0.0  # [-] largest
 
@@ -52,11 +55,18 @@ class NodeLiquid:
     sound: bool = True
     tally: NodeTally = field(default_factory=NodeTally)
 
-    def advance(self, dt: float) -> None:
-        report = self.nodes.advance(dt)
+    @property
+    def core(self) -> mps.EulerianLiquid:
+        return self.nodes
+
+    def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
+        load = {} if exchange is None else {"exchange": exchange}
+        report = self.nodes.advance(dt, **load)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt
+        tally.friction += report.friction * dt
+        tally.unexplained += report.unexplained * dt
         tally.substeps += report.substeps
         tally.divergence = max(tally.divergence, report.divergence)
         self.sound = report.sound
@@ -115,10 +125,13 @@ class NodeLiquid:
                 "velocity": self._written(velocity),
                 "pressure": self._written(pressure),
             }
+        time = tally.time or math.inf  # nothing has acted yet
         gradient = tally.impulse / tally.time if tally.time else nodes.pressure_gradient
         diagnostics: dict[str, ArrayLike] = {
             "bulk_velocity": nodes.bulk_velocity,
             "pressure_gradient": gradient,
+            "pressure_gradient_friction": tally.friction / time,
+            "liquid_unexplained": tally.unexplained / time,
             "pressure_noise": nodes.pressure_noise,
             "liquid_kinetic_energy": nodes.kinetic_energy,
             "divergence": tally.divergence,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mpsdem._core import mps
+from mpsdem._core import coupling, mps
 from mpsdem.geometry import Kind
 from mpsdem.liquids.bins import RINGS, bin_means, ring_edges, section_count
 from mpsdem.liquids.protocol import FloatArray, Stored
@@ -89,8 +89,13 @@ class ParticleLiquid:
     sound: bool = True
     tally: Tally = field(default_factory=Tally)
 
-    def advance(self, dt: float) -> None:
-        report = self.particles.advance(dt)
+    @property
+    def core(self) -> mps.LagrangianLiquid:
+        return self.particles
+
+    def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
+        load = {} if exchange is None else {"exchange": exchange}
+        report = self.particles.advance(dt, **load)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt
@@ -163,7 +168,7 @@ class ParticleLiquid:
         diagnostics: dict[str, ArrayLike] = {
             "bulk_velocity": particles.bulk_velocity,
             "pressure_gradient": gradient,
-            "liquid_friction": tally.friction / time,
+            "pressure_gradient_friction": tally.friction / time,
             "liquid_unexplained": tally.unexplained / time,
             "pressure_iterations": tally.iterations / max(1, tally.substeps),
             "pressure_residual": tally.residual,

@@ -40,6 +40,7 @@ class ProfileLiquid:
         diagnostics: dict[str, ArrayLike] = {
             "bulk_velocity": self.bulk_velocity,
             "pressure_gradient": self.pressure_gradient,
+            "pressure_gradient_friction": self.pressure_gradient,
         }
         return {}, diagnostics
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from mpsdem._core import coupling, mps
 
 FloatArray = NDArray[np.float64]
 Stored = NDArray[Any] | int | float
@@ -36,3 +38,15 @@ class Liquid(Protocol):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Go on from a `state`."""
+
+
+@runtime_checkable
+class ComputedLiquid(Liquid, Protocol):
+    """A liquid that can feel solids."""
+
+    @property
+    def core(self) -> mps.LagrangianLiquid | mps.EulerianLiquid:
+        """What an exchange with solids finds its way in."""
+
+    def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
+        """Go on by dt [s], with what the solids of an exchange give."""

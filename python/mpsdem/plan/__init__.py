@@ -4,6 +4,7 @@ from mpsdem.plan.clock import Clock
 from mpsdem.plan.limits import Limit, Step
 from mpsdem.plan.plan import SOFT, Estimate, Number, Plan, Planned, make_plan
 from mpsdem.plan.scales import (
+    COMPUTED,
     DRAG_LAWS,
     DragLaw,
     clear_gradient,
@@ -20,6 +21,7 @@ from mpsdem.plan.scales import (
 )
 
 __all__ = [
+    "COMPUTED",
     "DRAG_LAWS",
     "SOFT",
     "Clock",

@@ -11,6 +11,7 @@ from mpsdem import _core
 from mpsdem.case import Case, CaseError, Problem
 from mpsdem.contacts import rayleigh_time
 from mpsdem.plan.scales import (
+    COMPUTED,
     drag_rate,
     impacts,
     liquid_model,
@@ -68,14 +69,14 @@ class Step:
 
 
 def solid_limits(case: Case, speed: float) -> tuple[Limit, ...]:
-    """Limits of the step of the solids, which collide at `speed` [m/s]; none without solids.
+    """Limits of the step of solids that collide at `speed` [m/s]; none where none moves.
 
     Raises
     ------
     CaseError
         If ``fidelity.solid_step`` is too long, or the contacts need a speed and there is none.
     """
-    if case.solids is None:
+    if case.solids is None or case.solids.held:
         return ()
     return _limits(
         "solid_step",
@@ -122,7 +123,7 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
         If ``fidelity.coupling_step`` is too long.
     """
     every = Limit(name="output.every", value=case.output.every)
-    if case.solids is None:
+    if not of_solids or case.solids is None:
         return (every,)
     work = SOLID_RATE / case.solids_count * min(limit.value for limit in of_solids)
     prompt = Limit(name="a second of computing, so that a signal is obeyed", value=work)
@@ -150,7 +151,7 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
     CaseError
         If its solver was not built.
     """
-    if case.liquid is None or liquid_model(case) not in ("eulerian", "lagrangian"):
+    if case.liquid is None or liquid_model(case) not in COMPUTED:
         return
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     _require_solver(case)

@@ -19,9 +19,16 @@ from mpsdem.plan.limits import (
     solid_limits,
 )
 from mpsdem.plan.scales import (
+    COMPUTED,
+    DILUTE,
+    density_ratio,
     drag_rate,
+    has_added_mass,
+    has_lubrication,
     impact_speed,
+    impact_stokes,
     impacts,
+    is_two_way,
     liquid_model,
     mean_diameter,
     particle_count,
@@ -31,9 +38,9 @@ from mpsdem.plan.scales import (
     spring_stiffness,
     terminal_velocity,
     turbulence,
+    wet_restitution,
 )
 
-_DILUTE = 1e-3  # [-] solid fraction above which the liquid notices the solids
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 _SERIAL = 5000  # solids up to which threads cost more than they gain
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
@@ -92,8 +99,14 @@ class Plan:
         Speed of the collisions that the contacts are judged by [m/s]; 0 without solids.
     liquid_model : {"profile", "eulerian", "lagrangian"} or None
         How the liquid is computed; None without any.
+    two_way : bool
+        Whether the liquid feels the solids.
+    added_mass, lubrication : bool
+        Whether solids carry liquid along, and whether it damps their impacts.
+    smoothing_radius : float
+        Radius over which void fraction and exchange are averaged [m]; 0 without solids.
     solid_step : Step or None
-        Step of the solids; None without any.
+        Step of the solids; None where none moves.
     coupling_step : Step
         Time between two looks at the liquid.
     liquid_step : Step or None
@@ -116,6 +129,10 @@ class Plan:
     left_out: tuple[Planned, ...]
     impact_speed: float
     liquid_model: str | None
+    two_way: bool
+    added_mass: bool
+    lubrication: bool
+    smoothing_radius: float
     solid_step: Step | None
     coupling_step: Step
     liquid_step: Step | None
@@ -125,11 +142,6 @@ class Plan:
     estimate: Estimate
     warnings: tuple[str, ...]
 
-    @property
-    def smoothing_radius(self) -> float:
-        """Radius over which the void fraction is averaged [m]; 0 without solids."""
-        return smoothing_radius(self.case)
-
 
 def make_plan(case: Case) -> Plan:
     """Decide what a case requires.
@@ -137,7 +149,8 @@ def make_plan(case: Case) -> Plan:
     Raises
     ------
     CaseError
-        If a step given in ``fidelity`` exceeds its limit, or a limit cannot be found.
+        If a step given in ``fidelity`` exceeds its limit, a limit cannot be found, or the
+        smoothing radius is too small for what liquid and solids exchange.
     """
     speed = impact_speed(case)
     of_solids = solid_limits(case, speed)
@@ -159,10 +172,14 @@ def make_plan(case: Case) -> Plan:
     return Plan(
         case=case,
         numbers=tuple(_numbers(case)),
-        stages=tuple(_stages(case, clock)),
+        stages=tuple(_stages(case, clock, turns)),
         left_out=tuple(_left_out(case)),
         impact_speed=speed,
         liquid_model=liquid_model(case),
+        two_way=is_two_way(case),
+        added_mass=has_added_mass(case),
+        lubrication=has_lubrication(case),
+        smoothing_radius=smoothing_radius(case),
         solid_step=Step(value=coupling_step / substeps, limits=of_solids) if of_solids else None,
         coupling_step=Step(value=coupling_step, limits=of_coupling),
         liquid_step=Step(value=turns * coupling_step, limits=of_liquid) if of_liquid else None,
@@ -200,7 +217,7 @@ def _numbers(case: Case) -> Iterator[Number]:
         unit="",
         meaning="coarse: the bore sees single solids" if diameter > 0.02 * bore else "fine",
     )
-    crowd = "dilute" if fraction <= _DILUTE else "a liquid would notice the solids"
+    crowd = "dilute" if fraction <= DILUTE else "a liquid notices the solids"
     yield Number(name="mean solid fraction", value=fraction, unit="", meaning=crowd)
     if liquid is None:
         return
@@ -225,6 +242,24 @@ def _numbers(case: Case) -> Iterator[Number]:
         unit="",
         meaning="solids lag the liquid" if stokes > 0.1 else "solids follow the liquid",
     )
+    if not solids.held:
+        damped = (
+            f"the liquid between leaves {wet_restitution(case):.2g} of the restitution"
+            if has_lubrication(case)
+            else "they rebound as if dry"
+        )
+        yield Number(
+            name="Stokes number of impacts", value=impact_stokes(case), unit="", meaning=damped
+        )
+        carried = (
+            "the solids carry liquid along" if has_added_mass(case) else "of solids and liquid"
+        )
+        yield Number(
+            name="density ratio",
+            value=density_ratio(case),
+            unit="",
+            meaning=carried,
+        )
     if solids.density > liquid.density and case.gravity > 0:
         deposition = durand_deposition_velocity(
             pipe_diameter=bore,
@@ -258,39 +293,81 @@ def _flow(case: Case) -> str:
     return f"{model.replace('_', ' ')} and log-law wall function, {chosen}"
 
 
-def _stages(case: Case, clock: Clock) -> Iterator[Planned]:
-    solids, liquid = case.solids, case.liquid
-    model = liquid_model(case)
-    if liquid is not None and model in _LIQUID_KINDS:
-        if case.pipe.has_plate:
-            asked = (
-                f"move, as a plate pushes them in strokes of {case.pipe.resolved_stroke:g} m, and "
-                f"works in {case.pipe.resolved_stroke + case.pipe.settling_length:g} m of pipe "
-                "upstream"
-            )
-        elif liquid.model == "auto":
-            asked = (
-                "as the liquid must be computed (its pressure gradient is given), and the pipe is "
-                "straight, full, rigid and periodic"
-            )
-        else:
-            asked = "were asked for"
-        reason = f"about {particle_count(case)} {_LIQUID_KINDS[model]} {asked}; {_flow(case)}"
-        yield Planned(name="AdvanceLiquid", reason=reason)
+def _stages(case: Case, clock: Clock, turns: int) -> Iterator[Planned]:
+    solids, two_way = case.solids, is_two_way(case)
+    if liquid_model(case) in COMPUTED and not two_way:
+        yield _liquid_stage(case)
     if solids is not None:
-        if liquid is not None:
-            flow = "parabola" if pipe_profile(case).laminar else "turbulent profile"
-            kind = _LIQUID_KINDS.get(model or "")
-            reason = f"of the {kind} near a solid" if kind else f"it is a prescribed {flow}"
-            yield Planned(name="SampleLiquid", reason=f"the velocity of the liquid: {reason}")
-            if _needs_void_fraction(case):
-                reason = f"the drag law {solids.drag} depends on the share of liquid at a solid"
-                yield Planned(name="FindVoidFraction", reason=reason)
-            yield Planned(name="DragForce", reason=f"the liquid carries the solids: {solids.drag}")
-        reason = f"{case.solids_count} solids, {solids.contact}: {clock.substeps} steps a turn"
-        yield Planned(name="AdvanceSolids", reason=reason)
+        yield from _coupling_stages(case, turns)
+        if not solids.held:
+            reason = f"{case.solids_count} solids, {solids.contact}: {clock.substeps} steps a turn"
+            yield Planned(name="AdvanceSolids", reason=reason)
+        elif not two_way:
+            yield Planned(name="HoldSolids", reason="they take up the drag, and stay (solids.held)")
+    if two_way:
+        yield _exchange_stage(case, turns)
+        yield _liquid_stage(case)
     reason = f"{clock.frames + 1} frames, one every {clock.every:g} s"
     yield Planned(name="Record", reason=reason)
+
+
+def _liquid_stage(case: Case) -> Planned:
+    model, liquid, pipe = liquid_model(case), case.liquid, case.pipe
+    assert model is not None
+    assert liquid is not None
+    if pipe.has_plate:
+        asked = (
+            f"move, as a plate pushes them in strokes of {pipe.resolved_stroke:g} m, and "
+            f"works in {pipe.resolved_stroke + pipe.settling_length:g} m of pipe upstream"
+        )
+    elif liquid.model == "auto":
+        why = "it feels the solids" if is_two_way(case) else "its pressure gradient is given"
+        asked = (
+            f"as the liquid must be computed ({why}), and the pipe is straight, full, rigid and "
+            "periodic"
+        )
+    else:
+        asked = "were asked for"
+    reason = f"about {particle_count(case)} {_LIQUID_KINDS[model]} {asked}; {_flow(case)}"
+    return Planned(name="AdvanceLiquid", reason=reason)
+
+
+def _coupling_stages(case: Case, turns: int) -> Iterator[Planned]:
+    """What finds the drag of the liquid on the solids."""
+    if case.liquid is None:
+        return
+    solids = solids_of(case)
+    if is_two_way(case):
+        reason = (
+            "the velocity of the liquid at a solid, averaged over "
+            f"{smoothing_radius(case):g} m as the exchange is, once in {turns} turns"
+        )
+    else:
+        flow = "parabola" if pipe_profile(case).laminar else "turbulent profile"
+        kind = _LIQUID_KINDS.get(liquid_model(case) or "")
+        reason = "the velocity of the liquid: " + (
+            f"of the {kind} near a solid" if kind else f"it is a prescribed {flow}"
+        )
+    yield Planned(name="SampleLiquid", reason=reason)
+    if _needs_void_fraction(case):
+        reason = f"the drag law {solids.drag} depends on the share of liquid at a solid"
+        yield Planned(name="FindVoidFraction", reason=reason)
+    verb = "drags at" if solids.held else "carries"
+    reason = f"the liquid {verb} the solids: {solids.drag}"
+    if has_added_mass(case):
+        reason += "; they carry half their volume of it along"
+    yield Planned(name="DragForce", reason=reason)
+
+
+def _exchange_stage(case: Case, turns: int) -> Planned:
+    asked = case.fidelity.coupling == "two-way"
+    why = (
+        "as was asked for"
+        if asked
+        else f"as the solids fill {case.solids_fraction:.2g} of the bore, above {DILUTE:g}"
+    )
+    reason = f"the liquid feels the solids, {why}: it gets what it gave them, once in {turns} turns"
+    return Planned(name="ExchangeMomentum", reason=reason)
 
 
 def _left_out(case: Case) -> Iterator[Planned]:
@@ -304,15 +381,43 @@ def _left_out(case: Case) -> Iterator[Planned]:
     if solids is None:
         yield Planned(name="solids", reason="the case has no [solids]: clear liquid")
         return
+    if solids.held:
+        yield Planned(name="AdvanceSolids", reason="the solids are held")
     if liquid is not None:
-        reason = "the liquid does not feel the solids; the pressure gradient counts their drag"
-        yield Planned(name="ExchangeMomentum", reason=reason)
+        if not is_two_way(case):
+            yield Planned(name="ExchangeMomentum", reason=_why_one_way(case))
         if not _needs_void_fraction(case):
             alone = "a lone solid has no neighbors"
             reason = alone if case.solids_count == 1 else f"{solids.drag} takes no notice of it"
             yield Planned(name="FindVoidFraction", reason=reason)
+        if not solids.held:
+            yield from _left_out_of_the_motion(case)
     if solids.rolling_friction == 0 == solids.at_wall.rolling_friction:
         yield Planned(name="rolling resistance", reason="solids.rolling_friction = 0")
+
+
+def _why_one_way(case: Case) -> str:
+    if case.fidelity.coupling == "one-way":
+        why = "one-way coupling was asked for"
+    elif liquid_model(case) not in COMPUTED:
+        why = "a prescribed profile does not feel the solids"
+    elif case.pipe.has_plate:
+        why = "a liquid that a push plate moves does not feel the solids"
+    else:
+        why = f"the solids fill no more than {DILUTE:g} of the bore"
+    return f"{why}; the pressure gradient counts their drag"
+
+
+def _left_out_of_the_motion(case: Case) -> Iterator[Planned]:
+    if not has_added_mass(case):
+        ratio = density_ratio(case)
+        off = case.fidelity.added_mass == "off"
+        reason = "switched off" if off else f"the solids are {ratio:.3g} times as dense"
+        yield Planned(name="added mass", reason=reason)
+    if not has_lubrication(case):
+        off = case.fidelity.lubrication == "off"
+        reason = f"the Stokes number of impacts is {impact_stokes(case):.3g}, above 100"
+        yield Planned(name="lubrication", reason="switched off" if off else reason)
 
 
 def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
@@ -366,11 +471,19 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
             yield from _wall_law_warnings(case)
     if solids is None:
         return
-    if liquid is not None and case.solids_fraction > _DILUTE:
+    if liquid is not None and case.solids_fraction > DILUTE and not is_two_way(case):
+        consequence = "it flows through them" if solids.held else "they are carried too fast"
         yield (
-            f"the mean solid fraction {case.solids_fraction:.2g} is above {_DILUTE:g}: "
-            "a real liquid would yield to the solids, so they are carried too fast here"
+            f"the mean solid fraction {case.solids_fraction:.2g} is above {DILUTE:g}: "
+            f"a real liquid would yield to the solids, so {consequence} here"
         )
+    if liquid is not None and smoothing_radius(case) < 1.5 * solids.largest_diameter:
+        yield (
+            f"fidelity.smoothing_radius = {smoothing_radius(case):g} m is below 1.5 diameters: "
+            "the void fraction will be noisy"
+        )
+    if solids.held:
+        return
     pair, wall = impacts(case, diameter=solids.largest_diameter, speed=speed)
     overlap = max(pair.overlap, wall.overlap)
     if solids.contact == "linear_spring":
@@ -382,8 +495,3 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         if case.fidelity.stiffness_factor < 1:
             stiffer = "fidelity.stiffness_factor"
         yield f"a collision at {speed:.3g} m/s goes {share:.0%} of the radius deep: raise {stiffer}"
-    if liquid is not None and smoothing_radius(case) < 1.5 * solids.largest_diameter:
-        yield (
-            f"fidelity.smoothing_radius = {smoothing_radius(case):g} m is below 1.5 diameters: "
-            "the void fraction will be noisy"
-        )

@@ -23,14 +23,27 @@ DRAG_LAWS: Mapping[str, type[DragLaw]] = {
     "di_felice": coupling.DiFelice,
 }
 
+#: Models of a liquid that is computed, not prescribed.
+COMPUTED = ("eulerian", "lagrangian")
+#: Mean fraction of the solids above which the liquid notices them [-].
+DILUTE = 1e-3
+# Density of the solids over that of the liquid below which half the liquid they displace, as much
+# as a sphere carries along, is more than a quarter of their own mass [-].
+_LIGHT = 2.0
+# An impact in liquid returns exp(-35 / St) of the dry restitution: two thirds at a Stokes number of
+# 100, nothing below 10. Legendre et al. (2005), doi:10.1063/1.2010527.
+_VISCOUS, _DAMPING = 100.0, 35.0  # [-]
+_LEAST_RESTITUTION = 0.01  # [-] of the dry one: no contact law returns nothing
+
 
 def materials(case: Case) -> tuple[Material, Material]:
-    """Material of the solids and of the wall, softened by the stiffness factor."""
-    solids = solids_of(case)
+    """Material of the solids and of the wall, softened by the stiffness factor, in the liquid."""
+    solids, wet = solids_of(case), wet_restitution(case)
 
     def softened(material: Material) -> Material:
         values = material.model_dump(include=set(Material.model_fields))
         values["youngs_modulus"] *= case.fidelity.stiffness_factor
+        values["restitution"] *= wet
         return Material(**values)
 
     return softened(solids), softened(solids.at_wall)
@@ -123,10 +136,33 @@ def mean_diameter(solids: Solids) -> float:
 
 
 def smoothing_radius(case: Case) -> float:
-    """Radius over which the void fraction is averaged [m]; 0 without solids."""
+    """Radius over which void fraction and exchange are averaged [m]; 0 without solids.
+
+    Raises
+    ------
+    CaseError
+        If it is given so small that what solids and liquid exchange would be noise.
+    """
     if case.solids is None:
         return 0.0
-    return case.fidelity.smoothing_radius or 2.5 * case.solids.largest_diameter
+    diameter, spacing = case.solids.largest_diameter, 0.0
+    if liquid_model(case) in COMPUTED:
+        spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+    given = case.fidelity.smoothing_radius
+    if given is None:
+        return max(2.5 * diameter, 3 * spacing)
+    least = max(1.5 * diameter, 2 * spacing)
+    if is_two_way(case) and given < least:
+        what = "1.5 largest diameters" if least > 2 * spacing else "two spacings of the liquid"
+        problem = Problem(
+            field="fidelity.smoothing_radius",
+            value=given,
+            unit="m",
+            rule=f"must be >= {least:g} m, {what}, where the liquid feels the solids",
+            remedy="leave it out",
+        )
+        raise CaseError([problem])
+    return given
 
 
 def impact_speed(case: Case) -> float:
@@ -162,7 +198,67 @@ def liquid_model(case: Case) -> str | None:
         return case.liquid.model
     if case.pipe.has_plate:
         return "lagrangian"
-    return "eulerian" if case.liquid.computed else "profile"
+    return "eulerian" if case.liquid.computed or must_feel_solids(case) else "profile"
+
+
+def must_feel_solids(case: Case) -> bool:
+    """Whether the solids change the flow so much that its profile is not known.
+
+    As was asked for, else where they are not dilute and the pipe has room for a computed liquid.
+    """
+    coupling = case.fidelity.coupling
+    if case.solids is None or coupling == "one-way":
+        return False
+    if coupling == "two-way":
+        return True
+    return case.solids_fraction > DILUTE and not any(case.spacing_problems())
+
+
+def is_two_way(case: Case) -> bool:
+    """Whether the liquid feels the solids."""
+    if case.liquid is None or case.solids is None or case.pipe.has_plate:
+        return False
+    if case.fidelity.coupling != "auto":
+        return case.fidelity.coupling == "two-way"
+    return liquid_model(case) in COMPUTED and case.solids_fraction > DILUTE
+
+
+def has_added_mass(case: Case) -> bool:
+    """Whether the solids carry liquid along."""
+    if case.liquid is None or case.solids is None or case.solids.held:
+        return False
+    asked = case.fidelity.added_mass
+    return asked == "on" or (asked == "auto" and density_ratio(case) < _LIGHT)
+
+
+def density_ratio(case: Case) -> float:
+    """Density of the solids over that of the liquid [-]; infinite in a dry case."""
+    return math.inf if case.liquid is None else solids_of(case).density / case.liquid.density
+
+
+def impact_stokes(case: Case) -> float:
+    """Stokes number of the hardest impacts to expect, rho_s v d / (9 mu) [-]."""
+    solids, liquid = solids_of(case), case.liquid
+    if liquid is None:
+        return math.inf
+    speed = impact_speed(case)
+    return density_ratio(case) * speed * mean_diameter(solids) / (9 * liquid.kinematic_viscosity)
+
+
+def wet_restitution(case: Case) -> float:
+    """Restitution of the hardest impacts to expect, over that without liquid [-]."""
+    if not has_lubrication(case):
+        return 1.0
+    stokes = impact_stokes(case)
+    return max(math.exp(-_DAMPING / stokes) if stokes > 0 else 0.0, _LEAST_RESTITUTION)
+
+
+def has_lubrication(case: Case) -> bool:
+    """Whether the liquid between two solids damps their impact."""
+    if case.liquid is None or case.solids is None or case.solids.held:
+        return False
+    asked = case.fidelity.lubrication
+    return asked == "on" or (asked == "auto" and impact_stokes(case) < _VISCOUS)
 
 
 def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
@@ -205,7 +301,7 @@ def outlet_length(case: Case) -> float:
 
 def particle_count(case: Case) -> int:
     """Particles or nodes of the liquid, about; 0 unless it is computed."""
-    if liquid_model(case) not in ("eulerian", "lagrangian"):
+    if liquid_model(case) not in COMPUTED:
         return 0
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     pipe, length = case.pipe, case.pipe.length

@@ -38,7 +38,10 @@ SOLIDS = _table(
     ("laps", "1", "Times each solid left the outlet and came back at the inlet", "int32"),
     ("void_fraction", "1", "Share of liquid in the surroundings of each solid"),
     ("liquid_velocity", "m/s", "Undisturbed liquid velocity at each solid"),
-    ("drag_force", "N", "Force of the liquid on each solid, buoyancy apart"),
+    ("drag_force", "N", "Drag of the liquid on each solid"),
+    ("section_position", "m", "Middles of equal bins along the pipe"),
+    ("section_solids_fraction", "1", "Share of the solids in each bin, by where their centres are"),
+    ("section_solids_velocity", "m/s", "Their mean axial velocity there; NaN where there are none"),
 )
 
 LIQUID = _table(
@@ -60,14 +63,23 @@ LIQUID = _table(
 
 DIAGNOSTICS = _table(
     ("pressure_gradient", "Pa/m", "Loss of pressure along the axis, static head apart"),
-    ("bulk_velocity", "m/s", "Liquid flow rate over the cross-section of the bore"),
+    ("pressure_gradient_friction", "Pa/m", "Part of it that the walls take from the liquid"),
+    ("pressure_gradient_solids", "Pa/m", "Part of it that the solids take from the liquid"),
+    (
+        "bulk_velocity",
+        "m/s",
+        "Flow rate over the cross-section of the bore: of liquid and solids where it feels them, "
+        "else of the liquid",
+    ),
+    ("power_input", "W/m", "Flow rate times loss of pressure, since the last frame"),
+    ("dissipation", "W/m", "Power input that is neither motion, contact nor height of the solids"),
     ("solids_mean_velocity", "m/s", "Axial velocity of the solids, weighted with their mass"),
     ("largest_overlap", "1", "Largest contact overlap over the radius, since the last frame"),
-    ("kinetic_energy", "J", "Kinetic energy of the solids, spin included"),
+    ("kinetic_energy", "J", "Kinetic energy of the solids, spin and added mass included"),
     ("elastic_energy", "J", "Energy stored in the contacts"),
     ("contacts", "1", "Number of touching pairs, walls included", "int64"),
     ("wall_force", "N", "Mean force of the walls on the solids since the last frame"),
-    ("drag_force", "N", "Mean force of the liquid on all solids since the last frame"),
+    ("drag_force", "N", "Mean force of the liquid on all solids, buoyancy apart"),
     ("pressure_iterations", "1", "Iterations for the pressure, mean per step since the last frame"),
     ("pressure_residual", "1", "Largest residual of the pressure equation since the last frame"),
     ("density_scatter", "1", "Scatter of the liquid's particle number density about its mean"),
@@ -75,8 +87,26 @@ DIAGNOSTICS = _table(
     ("divergence", "1", "Largest rms divergence of the liquid, times spacing over speed"),
     ("liquid_kinetic_energy", "J/kg", "Kinetic energy of the liquid over its mass"),
     ("clamped", "1", "Pressures cut to their bounds since the last frame", "int64"),
-    ("liquid_friction", "Pa/m", "What walls and viscosity took from the liquid's axial momentum"),
-    ("liquid_unexplained", "Pa/m", "What the solved pressure did to it, and should not"),
+    (
+        "liquid_unexplained",
+        "Pa/m",
+        "What convection and pressure did to the liquid's momentum",
+    ),
+    (
+        "exchange_error",
+        "1",
+        "Largest relative difference of what both gave each other",
+    ),
+    ("liquid_volume_error", "1", "Largest error of the liquid's volume since the last frame"),
+    (
+        "void_fraction_clipped",
+        "1",
+        "Void fractions at solids raised to their floor",
+        "int64",
+    ),
+    ("liquid_void_fraction_clipped", "1", "Void fractions in the liquid raised to it", "int64"),
+    ("drags", "1", "Drags found since the last frame", "int64"),
+    ("drags_outside", "1", "Those of them outside the range of their law", "int64"),
     ("viscosity_capped", "1", "Eddy viscosities cut to what the step can bear", "int64"),
     ("shifts_cut", "1", "Shifts of particles cut to their longest since the last frame", "int64"),
     ("deficient", "1", "Particles without a viscous term since the last frame", "int64"),

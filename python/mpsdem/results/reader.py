@@ -209,8 +209,23 @@ class SolidsResults:
 
     @property
     def drag_force(self) -> Field:
-        """Force of the liquid on each solid, buoyancy apart, (frames, n, 3) [N]."""
+        """Drag of the liquid on each solid, (frames, n, 3) [N]."""
         return Field(self._run, "solids/drag_force")
+
+    @property
+    def section_position(self) -> FloatArray:
+        """Middles of equal bins along the pipe, (s,) [m]."""
+        return self._run.read("solids/section_position")
+
+    @property
+    def section_fraction(self) -> Field:
+        """Share of the solids in those bins, by where their centres are, (frames, s)."""
+        return Field(self._run, "solids/section_solids_fraction")
+
+    @property
+    def section_velocity(self) -> Field:
+        """Mean axial velocity of the solids in those bins, (frames, s) [m/s]; NaN without any."""
+        return Field(self._run, "solids/section_solids_velocity")
 
 
 class LiquidResults:

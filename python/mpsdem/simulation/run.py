@@ -13,6 +13,7 @@ import numpy as np
 
 from mpsdem.case import Case, load_case
 from mpsdem.info import provenance
+from mpsdem.liquids import section_count
 from mpsdem.plan import Plan, make_plan
 from mpsdem.results import (
     CheckpointError,
@@ -37,9 +38,11 @@ from mpsdem.simulation.watch import (
 from mpsdem.stages import (
     AdvanceLiquid,
     AdvanceSolids,
+    ExchangeMomentum,
     SimulationDiverged,
     Stage,
     State,
+    begin_exchange,
     build_stages,
     build_state,
     check,
@@ -183,7 +186,13 @@ class Simulation:
         solids, liquid = {}, {} if state.liquid is None else state.liquid.static_fields()
         if self.case.solids is not None:
             radius = state.solids.radius
-            solids = {"radius": radius, "density": np.full_like(radius, self.case.solids.density)}
+            pipe = self.case.pipe
+            sections = section_count(pipe.radius, pipe.length)
+            solids = {
+                "radius": radius,
+                "density": np.full_like(radius, self.case.solids.density),
+                "section_position": (np.arange(sections) + 0.5) * (pipe.length / sections),
+            }
         return ResultsWriter(
             self.directory,
             case=self.case,
@@ -195,7 +204,7 @@ class Simulation:
     def _begin(self, stages: Sequence[Stage], state: State, stopwatch: Stopwatch) -> None:
         """Record what there is before anything has moved."""
         for stage in stages:
-            if not isinstance(stage, AdvanceLiquid | AdvanceSolids):
+            if not isinstance(stage, AdvanceLiquid | AdvanceSolids | ExchangeMomentum):
                 stage(state, 0.0)
         self._write_checkpoint(state, stopwatch)
 
@@ -221,13 +230,16 @@ class Simulation:
             ) from None
         for name, value in checkpoint.state["stages"].items():
             setattr(state, name, value)
+        if state.exchange is not None:
+            begin_exchange(state)
         LOG.info("resumed at %g s", state.time)
         writer = ResultsWriter.reopen(self.directory, time=state.time)
         return state, writer, Stopwatch(**checkpoint.state["spent"])
 
     def _write_checkpoint(self, state: State, stopwatch: Stopwatch) -> None:
         check(state, self.case.pipe.radius)
-        kept = {f.name for f in fields(State)} - {"population", "liquid", "step", "time"}
+        parts = {"population", "liquid", "exchange"}  # which keep their own state, or need none
+        kept = {f.name for f in fields(State)} - parts - {"step", "time"}
         write_checkpoint(
             self.directory / "checkpoint.h5",
             case_toml=self.case.to_toml(),
@@ -257,7 +269,11 @@ def _slug(title: str) -> str:
 def _log_plan(plan: Plan) -> None:
     for stage in plan.stages:
         LOG.info("%s: %s", stage.name, stage.reason)
-    for name, step in (("solid", plan.solid_step), ("coupling", plan.coupling_step)):
+    for name, step in (
+        ("solid", plan.solid_step),
+        ("coupling", plan.coupling_step),
+        ("liquid", plan.liquid_step),
+    ):
         if step is not None:
             LOG.info("%s step %.4g s, bound by %s", name, step.value, step.binding.name)
     for warning in plan.warnings:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from mpsdem.analysis import extent
 from mpsdem.liquids import CLIPS, PLATE_COUNTS, NodeLiquid, ParticleLiquid
-from mpsdem.plan import SOFT, Plan, clear_gradient, gravity, pipe_profile
+from mpsdem.plan import COMPUTED, SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import Results
 from mpsdem.stages import State
 
@@ -42,33 +42,26 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
         "steps": state.step,
         "solid_steps": state.step * plan.clock.substeps,
         "liquid_model": plan.liquid_model,
+        "coupling": _coupling(plan),
         "solids_count": plan.case.solids_count,
+        "dissipation": _mean(results, "dissipation"),
     }
-    parts = (_of_liquid(plan, state, results), _of_solids(plan, state, results))
-    values |= parts[0] | parts[1]
-    errors = [part["momentum_error"] for part in parts if part.get("momentum_error") is not None]
+    values |= _of_liquid(plan, state, results) | _of_solids(plan, results)
+    if plan.case.liquid is not None and plan.case.solids is not None:
+        values |= _of_both(plan, results, values)
+    errors = [error for error in _momentum_errors(plan, state, results) if error is not None]
     values["momentum_error"] = max(errors, default=None)
-    values["warnings"] = [*plan.warnings, *_warnings(values)]
-    reasons = {"exchange_error": "the liquid takes no impulse from the solids"}
-    if plan.liquid_model not in ("eulerian", "lagrangian"):
-        reasons |= dict.fromkeys(("liquid_count", "mass_error"), "the liquid has no particles")
-    if plan.case.liquid is None:
-        reasons |= dict.fromkeys((*reasons, "liquid_model", *_LIQUID_KEYS), "no liquid")
-    elif plan.case.liquid.bulk_velocity == 0:
-        reasons |= {"delivered_concentration": "the liquid is at rest"}
-    if plan.case.solids is None:
-        reasons |= dict.fromkeys(_SOLIDS_KEYS, "no solids")
-    elif plan.case.gravity == 0:
-        reasons |= {"bed_height": "no gravity"}
-    if not errors:
-        reasons |= {"momentum_error": _no_ledger(plan)}
-    return values, reasons
+    values["warnings"] = [*plan.warnings, *_warnings(plan, values)]
+    return values, _reasons(plan, values)
 
 
 _LIQUID_KEYS = (
     "bulk_velocity",
     "pressure_gradient",
+    "pressure_gradient_friction",
+    "pressure_gradient_solids",
     "pressure_gradient_static",
+    "power_input",
     "friction_factor",
     "delivered_concentration",
 )
@@ -81,13 +74,49 @@ _SOLIDS_KEYS = (
     "largest_overlap",
     "exchange_error",
 )
+# Share of the drags beyond the range of their law that is worth a warning [-].
+_FAR_OUTSIDE = 0.05
 
 
-def _warnings(values: dict[str, Any]) -> Iterator[str]:
+def _coupling(plan: Plan) -> str | None:
+    if plan.case.liquid is None or plan.case.solids is None:
+        return None
+    return "two-way" if plan.two_way else "one-way"
+
+
+def _reasons(plan: Plan, values: dict[str, Any]) -> dict[str, str]:
+    """Why keys of the summary have no value."""
+    reasons: dict[str, str] = {}
+    if not plan.two_way:
+        reasons |= {"exchange_error": "the liquid takes no impulse from the solids"}
+    if plan.liquid_model not in COMPUTED:
+        reasons |= dict.fromkeys(("liquid_count", "mass_error"), "the liquid has no particles")
+    if plan.case.liquid is None:
+        reasons |= dict.fromkeys((*reasons, "liquid_model", "coupling", *_LIQUID_KEYS), "no liquid")
+    elif values.get("bulk_velocity") == 0:
+        reasons |= {"delivered_concentration": "the liquid is at rest"}
+    if plan.case.solids is None:
+        reasons |= dict.fromkeys((*_SOLIDS_KEYS, "coupling"), "no solids")
+    elif plan.case.gravity == 0:
+        reasons |= {"bed_height": "no gravity"}
+    if values["momentum_error"] is None:
+        reasons |= {"momentum_error": _no_ledger(plan)}
+    return reasons
+
+
+def _warnings(plan: Plan, values: dict[str, Any]) -> Iterator[str]:
     if (overlap := values.get("largest_overlap", 0.0)) > SOFT:
         yield f"solids overlapped by up to {overlap:.0%} of their radius: contacts are too soft"
     if clipped := values.get("void_fraction_clipped"):
         yield f"{clipped} void fractions fell below the floor and were raised to it"
+    if clipped := values.get("liquid_void_fraction_clipped"):
+        yield (
+            f"{clipped} void fractions of the liquid fell below the floor and were raised to it: a "
+            "larger fidelity.smoothing_radius spreads the solids wider"
+        )
+    if (outside := values.get("drag_outside", 0.0)) > _FAR_OUTSIDE:
+        assert plan.case.solids is not None
+        yield f"{outside:.0%} of the drags lie outside the range of {plan.case.solids.drag}"
 
 
 def _mean(results: Results, name: str) -> float:
@@ -95,13 +124,23 @@ def _mean(results: Results, name: str) -> float:
     return float(results.diagnostics[name][second_half].mean())
 
 
+def _sum(results: Results, name: str) -> int:
+    return int(results.diagnostics[name].sum())
+
+
 def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
     case, liquid = plan.case, plan.case.liquid
     if liquid is None:
         return {}
-    values = {
-        "bulk_velocity": _mean(results, "bulk_velocity"),
-        "pressure_gradient": _mean(results, "pressure_gradient"),
+    means = (
+        "bulk_velocity",
+        "pressure_gradient",
+        "pressure_gradient_friction",
+        "pressure_gradient_solids",
+        "power_input",
+    )
+    values: dict[str, Any] = {
+        **{name: _mean(results, name) for name in means},
         "pressure_gradient_static": float(-liquid.density * gravity(case)[0]),
         "friction_factor": pipe_profile(case).friction_factor,
     }
@@ -111,27 +150,25 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
         else:
             values |= _of_nodes(state.liquid, results)
         velocity = values["bulk_velocity"]
-        if case.solids is None and velocity != 0:
+        if velocity != 0:
+            # with solids the loss is theirs too, without any the whole of it is the wall's
+            alone = case.solids is None
+            loss = values["pressure_gradient" if alone else "pressure_gradient_friction"]
             dynamic = liquid.density * velocity * abs(velocity) / 2
-            values["friction_factor"] = values["pressure_gradient"] * 2 * case.pipe.radius / dynamic
+            values["friction_factor"] = loss * 2 * case.pipe.radius / dynamic
     return values
 
 
 def _of_particles(liquid: ParticleLiquid, results: Results) -> dict[str, Any]:
-    def total(names: Iterable[str]) -> dict[str, int]:
-        return {name: int(results.diagnostics[name].sum()) for name in names}
-
     values: dict[str, Any] = {
         "liquid_count": liquid.particles.liquid_count,
         # particles carry the mass, as long as they are in the bore
         "mass_error": 1 - liquid.count_in_bore / liquid.full_count,
         "pressure_iterations": _mean(results, "pressure_iterations"),
-        "liquid_clips": total(CLIPS),
+        "liquid_clips": {name: _sum(results, name) for name in CLIPS},
     }
-    if liquid.has_plate:  # plate and outlet act through the pressure: no ledger without it
-        values["push_plate"] = total(PLATE_COUNTS)
-    else:
-        values["momentum_error"] = _liquid_momentum_error(results)
+    if liquid.has_plate:
+        values["push_plate"] = {name: _sum(results, name) for name in PLATE_COUNTS}
     return values
 
 
@@ -144,51 +181,89 @@ def _of_nodes(liquid: NodeLiquid, results: Results) -> dict[str, Any]:
     }
 
 
-def _of_solids(plan: Plan, state: State, results: Results) -> dict[str, Any]:
-    case, liquid = plan.case, plan.case.liquid
+def _of_solids(plan: Plan, results: Results) -> dict[str, Any]:
+    case = plan.case
     if case.solids is None:
         return {}
     solids = results.solids
     radius = solids.radius
     x, _, z = np.moveaxis(solids.position[-1], -1, 0)
     unwrapped = x + case.pipe.length * solids.laps[-1]
-    mean_velocity = _mean(results, "solids_mean_velocity")
-    concentration = float(4 / 3 * math.pi * (radius**3).sum() / case.pipe.bore_volume)
-    values = {
-        "solids_mean_velocity": mean_velocity,
+    return {
+        "solids_mean_velocity": _mean(results, "solids_mean_velocity"),
         "solids_front_position": float(extent(unwrapped[None]).front[0]),
-        "insitu_concentration": concentration,
+        "insitu_concentration": _concentration(plan, results),
         "bed_height": float(np.quantile(z + radius, _BED_SHARE) + case.pipe.radius),
         "largest_overlap": float(results.diagnostics["largest_overlap"].max()),
-        "momentum_error": _solids_momentum_error(plan, state, results),
-        "void_fraction_clipped": state.clipped,
     }
-    if liquid is not None and liquid.bulk_velocity != 0:
-        delivered = concentration * mean_velocity / liquid.bulk_velocity
-        values["delivered_concentration"] = delivered
-    return values
+
+
+def _concentration(plan: Plan, results: Results) -> float:
+    """Volume of the solids over that of the bore [-]."""
+    return float(4 / 3 * math.pi * (results.solids.radius**3).sum() / plan.case.pipe.bore_volume)
+
+
+def _of_both(plan: Plan, results: Results, values: dict[str, Any]) -> dict[str, Any]:
+    """What solids and liquid do together; the values known so far say how fast they are."""
+    of_both: dict[str, Any] = {
+        "void_fraction_clipped": _sum(results, "void_fraction_clipped"),
+        "drag_outside": _sum(results, "drags_outside") / _sum(results, "drags"),
+    }
+    if (flux := values["bulk_velocity"]) != 0:
+        of_solids = values["insitu_concentration"] * values["solids_mean_velocity"]
+        of_both["delivered_concentration"] = of_solids / flux
+    if plan.two_way:
+        clipped = "liquid_void_fraction_clipped"
+        volume_error = float(results.diagnostics["liquid_volume_error"].max())
+        of_both |= {
+            clipped: _sum(results, clipped),
+            "exchange_error": float(results.diagnostics["exchange_error"].max()),
+            "mass_error": volume_error,
+        }
+        if plan.liquid_model == "lagrangian":
+            of_both["mass_error"] = max(volume_error, abs(values["mass_error"]))
+    return of_both
 
 
 def _no_ledger(plan: Plan) -> str:
     if plan.case.pipe.has_plate:
         return "plate and outlet act through the pressure"
-    if plan.case.solids is None and plan.liquid_model in ("profile", "eulerian"):
+    if plan.case.solids is None and plan.liquid_model == "profile":
         return "this liquid keeps no ledger"
     return "nothing took an impulse at the wall"
 
 
-def _liquid_momentum_error(results: Results) -> float | None:
-    """Axial impulse on the liquid that nothing explains, over that of friction, if any."""
-    unexplained = results.diagnostics["liquid_unexplained"].sum()
-    friction = results.diagnostics["liquid_friction"].sum()
+def _momentum_errors(plan: Plan, state: State, results: Results) -> Iterator[float | None]:
+    """Impulse that nothing explains over that of the walls: of the liquid, and of the solids."""
+    if plan.liquid_model in COMPUTED and not plan.case.pipe.has_plate:
+        yield _liquid_momentum_error(plan, results)
+    if plan.case.solids is not None and not plan.case.solids.held:
+        yield _solids_momentum_error(plan, state, results)
+
+
+def _liquid_momentum_error(plan: Plan, results: Results) -> float | None:
+    """Axial: what the liquid gained, less what gradient, walls and solids gave it."""
+    liquid, numbers = plan.case.liquid, results.diagnostics
+    assert liquid is not None
+    flux = numbers["bulk_velocity"]
+    if plan.two_way:  # it holds the solids too
+        flux = flux - _concentration(plan, results) * numbers["solids_mean_velocity"]
+    interval = np.diff(results.time)
+
+    def impulse(name: str) -> Any:
+        return numbers[name][1:] @ interval
+
+    given = impulse("pressure_gradient") - impulse("pressure_gradient_solids")
+    friction = impulse("pressure_gradient_friction")
+    unexplained = liquid.density * (flux[-1] - flux[0]) - given + friction
     return float(abs(unexplained / friction)) if friction != 0 else None
 
 
 def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float | None:
-    """Impulse on the solids that nothing explains, over that of wall friction; None without any."""
+    """What the solids gained, less what weight, liquid and walls gave them; None without walls."""
     case, liquid, solids = plan.case, plan.case.liquid, state.solids
     assert case.solids is not None
-    mass = solids.mass
+    mass = case.solids.density * 4 / 3 * math.pi * results.solids.radius**3
     gained = mass @ (solids.velocity - results.solids.velocity[0])
     lightness = 1 - (liquid.density if liquid else 0.0) / case.solids.density
     weight = mass.sum() * lightness * gravity(case) * state.time

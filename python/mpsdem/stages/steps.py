@@ -1,0 +1,234 @@
+"""What moves liquid and solids on by a step, and what they do to each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from mpsdem._core import coupling
+from mpsdem.plan import DragLaw
+from mpsdem.stages.state import FloatArray, SimulationDiverged, State, check
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdvanceLiquid:
+    """Move the liquid: viscosity, pressure, and the particles themselves."""
+
+    name: ClassVar[str] = "AdvanceLiquid"
+    turns: int  # coupling steps to a step of the liquid, which is taken at the last of them
+    held: bool = False  # whether the solids stay where they are
+
+    def __call__(self, state: State, dt: float) -> None:
+        assert state.liquid is not None
+        if state.step % self.turns:
+            return
+        if state.exchange is None:
+            state.liquid.advance(self.turns * dt)
+        else:
+            self._with_solids(state, self.turns * dt)
+        if not state.liquid.sound:
+            remedy = "a smaller fidelity.courant; then another fidelity.particle_spacing"
+            if state.exchange is not None:
+                remedy = f"a smaller fidelity.liquid_step or a larger smoothing_radius; {remedy}"
+            raise SimulationDiverged(
+                step=state.step,
+                time=state.time,
+                field="pressure or velocity",
+                solid=None,
+                remedy=remedy,
+            )
+
+    def _with_solids(self, state: State, dt: float) -> None:
+        liquid, exchange = state.partners
+        liquid.advance(dt, exchange)
+        state.liquid_void_fraction_clipped += exchange.clipped
+        state.exchange_error = max(state.exchange_error, exchange.mismatch)
+        volume_error = abs(exchange.liquid_volume_error)
+        state.liquid_volume_error = max(state.liquid_volume_error, volume_error)
+        if self.held:
+            state.drag_impulse = state.drag_impulse + exchange.impulse.sum(axis=0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SampleLiquid:
+    """Read the velocity of the liquid at the solids."""
+
+    name: ClassVar[str] = "SampleLiquid"
+
+    def __call__(self, state: State, _dt: float) -> None:
+        assert state.liquid is not None
+        state.liquid_velocity = state.liquid.velocity_at(state.solids.position)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeginExchange:
+    """Find the liquid around each solid, and its velocity, where a step of the liquid begins.
+
+    In later turns of that step it is the solids that know how the liquid around them has changed.
+    """
+
+    name: ClassVar[str] = "SampleLiquid"
+    turns: int
+
+    def __call__(self, state: State, _dt: float) -> None:
+        if state.step > 0 and (state.step - 1) % self.turns:
+            return
+        _, exchange = state.partners
+        state.begun_at = state.solids.position
+        begin_exchange(state)
+        state.liquid_velocity = exchange.liquid_velocity
+        state.liquid_acceleration = exchange.liquid_acceleration
+        state.mean_velocity = np.zeros_like(state.begun_at)
+        state.mean_drag = np.zeros(len(state.begun_at))
+        state.impulse = np.zeros_like(state.begun_at)
+
+
+def begin_exchange(state: State) -> None:
+    """Let the exchange begin from what the state holds: anew in a run that is resumed."""
+    liquid, exchange = state.partners
+    exchange.begin(liquid.core, position=state.begun_at, radius=state.solids.radius)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FindVoidFraction:
+    """Find the share of liquid around each solid from its neighbors."""
+
+    name: ClassVar[str] = "FindVoidFraction"
+    average: coupling.VoidFraction
+    threads: int
+
+    def __call__(self, state: State, _dt: float) -> None:
+        solids = state.solids
+        state.void_fraction, clipped = self.average.at_solids(
+            position=solids.position, radius=solids.radius, threads=self.threads
+        )
+        state.void_fraction_clipped += clipped
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DragForce:
+    """Find the drag rate of each solid from its slip and the void fraction."""
+
+    name: ClassVar[str] = "DragForce"
+    law: DragLaw
+    inertia: FloatArray  # (n,) over the volume of a solid [kg/m3]
+    liquid_density: float
+    kinematic_viscosity: float
+
+    def __call__(self, state: State, _dt: float) -> None:
+        solids = state.solids
+        state.drags += len(solids)
+        state.drags_outside += coupling.count_outside(
+            self.law,
+            liquid_velocity=state.liquid_velocity,
+            velocity=solids.velocity,
+            void_fraction=state.void_fraction,
+            diameter=2 * solids.radius,
+            kinematic_viscosity=self.kinematic_viscosity,
+        )
+        state.drag_rate = coupling.drag_rate(
+            self.law,
+            liquid_velocity=state.liquid_velocity,
+            velocity=solids.velocity,
+            void_fraction=state.void_fraction,
+            diameter=2 * solids.radius,
+            density=self.inertia,
+            liquid_density=self.liquid_density,
+            kinematic_viscosity=self.kinematic_viscosity,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdvanceSolids:
+    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps.
+
+    With added mass, the solids' inertia is m + C M, with M the mass of the liquid that they
+    displace, and the liquid's own acceleration b moves them by (1 + C) M b: the added mass and the
+    pressure that accelerates the liquid, Maxey & Riley (1983), doi:10.1063/1.864230.
+    """
+
+    name: ClassVar[str] = "AdvanceSolids"
+    acceleration: FloatArray  # (n, 3), gravity less buoyancy [m/s2]
+    displaced: float  # M / (m + C M), 0 without added mass [-]
+    added_mass: float  # C [-]
+    substeps: int
+    dry: bool
+    pipe_radius: float
+
+    def __call__(self, state: State, dt: float) -> None:
+        solids, before = state.solids, state.solids.velocity
+        acceleration = self.acceleration
+        if state.exchange is not None:
+            # its change by the drag of the solids is no acceleration of the liquid far from them
+            share = (1 + self.added_mass) * self.displaced
+            acceleration = acceleration + share * state.liquid_acceleration
+        self._force(state, acceleration)
+        report = solids.advance(dt / self.substeps, self.substeps)
+        if not report.finite:
+            check(state, self.pipe_radius)
+        state.turn_impulse = solids.drag_impulse
+        if self.displaced:
+            gain = dt * (acceleration - self.acceleration)
+            gain -= self.added_mass * self.displaced * (solids.velocity - before)
+            state.turn_impulse = state.turn_impulse + solids.mass[:, None] * gain
+        if state.exchange is not None:
+            state.liquid_velocity = solids.liquid_velocity
+        state.drag_impulse = state.drag_impulse + state.turn_impulse.sum(axis=0)
+        state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
+
+    def _force(self, state: State, acceleration: FloatArray) -> None:
+        solids = state.solids
+        if self.dry:
+            solids.set_forcing(acceleration=acceleration)
+        elif state.exchange is None:
+            solids.set_forcing(
+                acceleration=acceleration,
+                liquid_velocity=state.liquid_velocity,
+                drag_rate=state.drag_rate,
+            )
+        else:
+            solids.set_forcing(
+                acceleration=acceleration,
+                liquid_velocity=state.liquid_velocity,
+                drag_rate=state.drag_rate,
+                liquid_acceleration=state.liquid_acceleration,
+                relaxation=state.exchange.relaxation(drag_rate=state.drag_rate, mass=solids.mass),
+            )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoldSolids:
+    """Count what the drag gives to solids that stay where they are."""
+
+    name: ClassVar[str] = "HoldSolids"
+
+    def __call__(self, state: State, dt: float) -> None:
+        drag = state.solids.mass * state.drag_rate
+        state.drag_impulse = state.drag_impulse + dt * (drag @ state.liquid_velocity)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExchangeMomentum:
+    """Sum up what the liquid gave to the solids, for it to get back in its step."""
+
+    name: ClassVar[str] = "ExchangeMomentum"
+    turns: int
+    held: bool
+
+    def __call__(self, state: State, _dt: float) -> None:
+        solids, (_, exchange) = state.solids, state.partners
+        state.mean_drag = state.mean_drag + solids.mass * state.drag_rate / self.turns
+        if not self.held:
+            state.mean_velocity = state.mean_velocity + solids.mean_velocity / self.turns
+            state.impulse = state.impulse + state.turn_impulse
+        if state.step % self.turns:
+            return
+        exchange.give(
+            position=state.begun_at,
+            mean_velocity=state.mean_velocity,
+            drag=state.mean_drag,
+            impulse=state.impulse,
+            held=self.held,
+        )
