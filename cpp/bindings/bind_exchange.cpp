@@ -125,7 +125,7 @@ duration : float
         .def_property_readonly("mismatch", &Exchange::mismatch,
                                "Impulse on liquid and solids together, over the sum of the sizes "
                                "of those on the solids [-].")
-        .def_property_readonly("volume_error", &Exchange::volume_error,
+        .def_property_readonly("liquid_volume_error", &Exchange::liquid_volume_error,
                                "Liquid volume over bore less solids, less 1 [-].");
 }
 

@@ -63,7 +63,7 @@ public:
     /// solids [-].
     [[nodiscard]] Real mismatch() const noexcept;
     /// Volume of the liquid by its void fractions, over bore less solids, less 1 [-].
-    [[nodiscard]] Real volume_error() const noexcept { return volume_error_; }
+    [[nodiscard]] Real liquid_volume_error() const noexcept { return volume_error_; }
 
 private:
     void find_void_fraction(const mps::LiquidPoints& points);

@@ -275,14 +275,14 @@ class Exchange:
         (n, 3) of the liquid at the solids, when the step began [m/s].
         """
     @property
+    def liquid_volume_error(self) -> float:
+        """
+        Liquid volume over bore less solids, less 1 [-].
+        """
+    @property
     def mismatch(self) -> float:
         """
         Impulse on liquid and solids together, over the sum of the sizes of those on the solids [-].
-        """
-    @property
-    def volume_error(self) -> float:
-        """
-        Liquid volume over bore less solids, less 1 [-].
         """
 def count_outside(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> int:
     """
