@@ -13,6 +13,22 @@ using namespace pybind11::literals;
 
 namespace {
 
+/// An optional argument: none is empty.
+std::span<const Vec3> vectors(const std::optional<Array<Real>>& a, const char* name) {
+    return a ? bindings::vectors(*a, name) : std::span<const Vec3>{};
+}
+std::span<const Real> values(const std::optional<Array<Real>>& a, const char* name) {
+    return a ? bindings::values(*a, name) : std::span<const Real>{};
+}
+
+/// One number for all, written to `same`, or one for each; zero for all is empty.
+std::span<const Real> one_or_many(const std::variant<Real, Array<Real>>& a, const char* name,
+                                  std::size_t n, std::vector<Real>& same) {
+    if (const auto* each = std::get_if<Array<Real>>(&a)) return bindings::values(*each, name);
+    if (std::get<Real>(a) != 0) same.assign(n, std::get<Real>(a));
+    return same;
+}
+
 using LawArgument =
     std::variant<const dem::LinearSpring*, const dem::HertzMindlin*, const dem::HertzViscoelastic*>;
 using WallArgument = std::variant<const geometry::Plane*, const geometry::Cylinder*>;
@@ -177,18 +193,31 @@ threads : int
             "set_forcing",
             [](dem::Solids& solids, const Array<Real>& acceleration,
                const std::optional<Array<Real>>& liquid_velocity,
-               const std::optional<Array<Real>>& drag_rate) {
+               const std::optional<Array<Real>>& drag_rate,
+               const std::optional<Array<Real>>& liquid_acceleration,
+               const std::optional<Array<Real>>& relaxation,
+               const std::variant<Real, Array<Real>>& added_mass) {
+                std::vector<Real> same;
                 solids.set_forcing(vectors(acceleration, "acceleration"),
-                                   liquid_velocity ? vectors(*liquid_velocity, "liquid_velocity")
-                                                   : std::span<const Vec3>{},
-                                   drag_rate ? values(*drag_rate, "drag_rate")
-                                             : std::span<const Real>{});
+                                   vectors(liquid_velocity, "liquid_velocity"),
+                                   values(drag_rate, "drag_rate"),
+                                   vectors(liquid_acceleration, "liquid_acceleration"),
+                                   values(relaxation, "relaxation"),
+                                   one_or_many(added_mass, "added_mass", solids.size(), same));
             },
             py::kw_only(), "acceleration"_a, "liquid_velocity"_a = py::none(),
-            "drag_rate"_a = py::none(),
-            R"(From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v).
+            "drag_rate"_a = py::none(), "liquid_acceleration"_a = py::none(),
+            "relaxation"_a = py::none(), "added_mass"_a = 0.,
+            R"(From now on dv/dt = F/m + acceleration + drag_rate (u - v), u = liquid_velocity.
 
-Drag is implicit in v. Starts the sums of `drag_impulse` anew.
+With the last two the liquid responds: du/dt = liquid_acceleration - relaxation (u - v), from
+`liquid_velocity` on. Both are implicit in the slip u - v, together: stable for any step. The
+liquid's inertia of each solid, drag_rate * mass / relaxation [kg], times u and the solid's mass
+times v then keep their sum in the exchange.
+
+Added mass adds added_mass (du/dt - dv/dt) to the solid's acceleration, implicitly: stable for any
+ratio of densities. A liquid that responds gets the opposite with the inertia above; one that does
+not has du/dt = 0. Contacts see the solid's own mass. Starts `drag_impulse` and `mean_velocity` anew.
 
 Parameters
 ----------
@@ -197,7 +226,19 @@ acceleration : (n, 3) float64 ndarray
 liquid_velocity : (n, 3) float64 ndarray, optional
     [m/s]; together with `drag_rate`.
 drag_rate : (n,) float64 ndarray, optional
-    [1/s].
+    [1/s], >= 0.
+liquid_acceleration : (n, 3) float64 ndarray, optional
+    What else moves the liquid at each solid [m/s2]; together with `relaxation`.
+relaxation : (n,) float64 ndarray, optional
+    Rate at which the liquid at each solid nears the solid's velocity [1/s], >= 0.
+added_mass : float or (n,) float64 ndarray
+    Over the solid's own mass [-], >= 0: C_m rho_liquid / rho_solid, C_m = 1/2 for a sphere. Force:
+    Auton, Hunt & Prud'homme (1988) doi:10.1017/S0022112088003246. Other than 0 only with `drag_rate`.
+
+Raises
+------
+ValueError
+    A shape, a negative number, or one of those that come together is missing.
 )")
         .def("advance", &dem::Solids::advance, "dt"_a, "steps"_a,
              py::call_guard<py::gil_scoped_release>(),
@@ -218,7 +259,13 @@ drag_rate : (n,) float64 ndarray, optional
             "(n,) times around the periodic axis.")
         .def_property_readonly(
             "drag_impulse", [](const dem::Solids& s) { return array(s.drag_impulse()); },
-            "(n, 3) impulse of drag on each solid since set_forcing [N s].")
+            "(n, 3) impulse of drag and added mass on each solid since set_forcing [N s].")
+        .def_property_readonly(
+            "mean_velocity", [](const dem::Solids& s) { return array(s.mean_velocity()); },
+            "(n, 3) mean over the time since set_forcing, as drag saw it [m/s]; in a liquid only.")
+        .def_property_readonly(
+            "liquid_velocity", [](const dem::Solids& s) { return array(s.liquid_velocity()); },
+            "(n, 3) of the liquid at each solid now [m/s]; in a liquid only.")
         .def_property_readonly(
             "wall_impulse", [](const dem::Solids& s) { return array(s.wall_impulse()); },
             "(3,) impulse of the walls on the solids since the start [N s].")

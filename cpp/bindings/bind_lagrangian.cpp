@@ -106,6 +106,9 @@ draws : (n, 2) float64 ndarray
                       "What walls and viscosity take up, mean over the call [Pa/m].")
         .def_readonly("unexplained", &AdvanceReport::unexplained,
                       "What p' does to the axial momentum, and must not, mean [Pa/m].")
+        .def_readonly("convection_error", &AdvanceReport::convection_error,
+                      "Axial momentum that particles failed to carry along between solids, and "
+                      "were given back, mean over the call [Pa/m].")
         .def_readonly("clamped", &AdvanceReport::clamped, "Pressures cut to the limit.")
         .def_readonly("viscosity_capped", &AdvanceReport::viscosity_capped,
                       "Eddy viscosities cut to what the step can bear.")
@@ -163,6 +166,9 @@ pressure_gradient : float, optional
     Given loss of pressure along the pipe [Pa/m].
 courant, tolerance, background, shift, pressure_limit : float
     Numbers of the method [-].
+speed : float
+    Of the stirring by solids, where the liquid itself hardly flows: scales the pressure limits as
+    the bulk velocity does [m/s].
 solver : {"two_level", "jacobi", "cholmod"}
     Of the pressure equation: conjugate gradients, or a factor each step where the build has it.
 pairing : {"conserving", "difference"}
@@ -175,30 +181,33 @@ References
 ----------
 Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
 )")
-        .def(py::init([](const Array<Real>& position, const Array<Real>& velocity,
-                         const Array<std::int8_t>& kind, Real particle_spacing, Real pipe_radius,
-                         Real pipe_length, const std::optional<PushPlate>& plate, Real density,
-                         Real kinematic_viscosity, Real roughness, const Turbulence& turbulence,
-                         Real bulk_velocity, std::optional<Real> pressure_gradient, Real courant,
-                         Real tolerance, const std::string& solver, const std::string& pairing,
-                         Real background, Real shift, Real pressure_limit, int threads) {
-                 using namespace mps::lagrangian;
-                 return Liquid(vectors(position, "position"), vectors(velocity, "velocity"),
-                               kinds(kind), pipe_radius, pipe_length, plate, density,
-                               kinematic_viscosity, roughness, flow(turbulence),
-                               {bulk_velocity, pressure_gradient},
-                               {particle_spacing, courant, tolerance, background, shift,
-                                pairing_of(pairing), pressure_limit, solver_of(solver), threads});
-             }),
-             py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
-             "pipe_radius"_a, "pipe_length"_a, "plate"_a = py::none(), "density"_a,
-             "kinematic_viscosity"_a, "roughness"_a, "turbulence"_a, "bulk_velocity"_a,
-             "pressure_gradient"_a = py::none(), "courant"_a = 0.8, "tolerance"_a = 1e-3,
-             "solver"_a = "two_level", "pairing"_a = "conserving", "background"_a = 0.02,
-             "shift"_a = 0.25, "pressure_limit"_a = 0.25, "threads"_a = 1)
+        .def(
+            py::init([](const Array<Real>& position, const Array<Real>& velocity,
+                        const Array<std::int8_t>& kind, Real particle_spacing, Real pipe_radius,
+                        Real pipe_length, const std::optional<PushPlate>& plate, Real density,
+                        Real kinematic_viscosity, Real roughness, const Turbulence& turbulence,
+                        Real bulk_velocity, std::optional<Real> pressure_gradient, Real courant,
+                        Real tolerance, const std::string& solver, const std::string& pairing,
+                        Real background, Real shift, Real pressure_limit, Real speed, int threads) {
+                using namespace mps::lagrangian;
+                return Liquid(
+                    vectors(position, "position"), vectors(velocity, "velocity"), kinds(kind),
+                    pipe_radius, pipe_length, plate, density, kinematic_viscosity, roughness,
+                    flow(turbulence), {bulk_velocity, pressure_gradient},
+                    {particle_spacing, courant, tolerance, background, shift, pairing_of(pairing),
+                     pressure_limit, speed, solver_of(solver), threads});
+            }),
+            py::kw_only(), "position"_a, "velocity"_a, "kind"_a, "particle_spacing"_a,
+            "pipe_radius"_a, "pipe_length"_a, "plate"_a = py::none(), "density"_a,
+            "kinematic_viscosity"_a, "roughness"_a, "turbulence"_a, "bulk_velocity"_a,
+            "pressure_gradient"_a = py::none(), "courant"_a = 0.8, "tolerance"_a = 1e-3,
+            "solver"_a = "two_level", "pairing"_a = "conserving", "background"_a = 0.02,
+            "shift"_a = 0.25, "pressure_limit"_a = 0.25, "speed"_a = 0., "threads"_a = 1)
         .def("__len__", &Liquid::places)
-        .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
-             "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
+        .def(
+            "advance", [](Liquid& liquid, Real dt) { return liquid.advance(dt); }, "dt"_a,
+            py::call_guard<py::gil_scoped_release>(),
+            "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
         .def(
             "drive",
             [](Liquid& liquid, Real bulk_velocity, std::optional<Real> pressure_gradient) {
@@ -252,7 +261,11 @@ Returns
         .def_property_readonly(
             "density_ratio", [](const Liquid& l) { return array(l.density_ratio()); },
             "(n,) number density over its mean in the liquid [-].")
-        .def_property_readonly("bulk_velocity", &Liquid::bulk_velocity, "Mean of the liquid [m/s].")
+        .def_property_readonly(
+            "void_fraction", [](const Liquid& l) { return array(l.void_fraction()); },
+            "(n,) share of the liquid, of the last substep [-].")
+        .def_property_readonly("bulk_velocity", &Liquid::bulk_velocity,
+                               "Flow rate of liquid and solids over the bore [m/s].")
         .def_property_readonly("pressure_gradient", &Liquid::pressure_gradient,
                                "Loss along the pipe in the last substep [Pa/m].")
         .def_property_readonly("wall_shear", &Liquid::wall_shear,
@@ -268,7 +281,9 @@ Returns
                 const auto s = l.snapshot();
                 return py::dict("position"_a = array(s.position), "velocity"_a = array(s.velocity),
                                 "pressure"_a = array(s.pressure), "id"_a = array(s.id),
-                                "ends"_a = array(s.ends));
+                                "ends"_a = array(s.ends), "acceleration"_a = array(s.acceleration),
+                                "flux"_a = array(s.flux),
+                                "void_fraction"_a = array(s.void_fraction));
             },
             "The exact state as arrays, for `restore`.")
         .def(
@@ -279,13 +294,17 @@ Returns
                 const auto pressure = state["pressure"].cast<Array<Real>>();
                 const auto id = state["id"].cast<Array<Index>>();
                 const auto ends = state["ends"].cast<Array<Real>>();
+                const auto acceleration = state["acceleration"].cast<Array<Real>>();
+                const auto flux = state["flux"].cast<Array<Real>>();
+                const auto eps = state["void_fraction"].cast<Array<Real>>();
                 const auto copy = [](auto span) {
                     return std::vector<std::remove_cvref_t<decltype(span[0])>>(span.begin(),
                                                                                span.end());
                 };
                 l.restore({copy(vectors(position, "position")), copy(vectors(velocity, "velocity")),
                            copy(values(pressure, "pressure")), copy(values(id, "id")),
-                           copy(values(ends, "ends"))});
+                           copy(values(ends, "ends")), copy(vectors(acceleration, "acceleration")),
+                           copy(vectors(flux, "flux")), copy(values(eps, "void_fraction"))});
             },
             "state"_a, "Continue bit-equal from a `state` of the same liquid.");
 }

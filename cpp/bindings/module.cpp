@@ -16,6 +16,7 @@ void bind_mps_operators(pybind11::module_ m);
 void bind_lagrangian(pybind11::module_ m);
 void bind_eulerian(pybind11::module_ m);
 void bind_coupling(pybind11::module_ m);
+void bind_exchange(pybind11::module_ m);
 
 namespace {
 
@@ -67,5 +68,7 @@ PYBIND11_MODULE(_core, m) {
     b::bind_mps_operators(mps);
     b::bind_lagrangian(mps);
     b::bind_eulerian(mps);
-    b::bind_coupling(m.def_submodule("coupling"));
+    const auto coupling = m.def_submodule("coupling");
+    b::bind_coupling(coupling);
+    b::bind_exchange(coupling);
 }

@@ -3,12 +3,13 @@
 #include "core/aligned.hpp"
 #include "core/lanes.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace mpsdem::dem {
 
-/// What surrounds the solids; only a liquid drags them.
-enum class Medium { dry, liquid };
+/// What surrounds the solids: nothing, a liquid that goes its way, or one that they slow and drive.
+enum class Medium { dry, liquid, responding_liquid };
 
 /// The solids in sorted order: solids that are near in space are near in memory.
 ///
@@ -16,7 +17,8 @@ enum class Medium { dry, liquid };
 /// them or zero. A row fills a register, so the contact loop reads and adds whole rows. Two rows
 /// fill a cache line: a contact writes to the last line only. Spin is stored as the surface speed
 /// radius * spin, and torque as the torque over the radius: the contact loop then needs no radius,
-/// and both rows of Newton's law share 1 / mass. What contacts never read stands apart.
+/// and both rows of Newton's law share 1 / mass. What contacts never read stands apart, and so does
+/// what only a liquid that responds needs.
 class Population {
 public:
     enum Field : std::size_t {
@@ -25,7 +27,8 @@ public:
         VX = 4, // [m/s]
         SX = 8, // [m/s]   radius * spin
         INVERSE_MASS = 11,
-        AX = 12, // [m/s2]  acceleration from outside, drag_rate * liquid velocity included
+        AX = 12, // [m/s2]  acceleration from outside; in a liquid that does not respond,
+                 //         drag_rate * liquid velocity is included
         FX = 16, // [N]
         TX = 20, // [N]     torque / radius
         record = 24,
@@ -33,9 +36,14 @@ public:
         UX = 28,   // [m/s]   liquid velocity
         DRAG = 31, // [1/s]   drag_rate
         X0 = 32,   // [m]     position at the last sort
-        field_count = 36
+        rest_end = 36,
+        BX = 36,         // [m/s2]  acceleration of the liquid, but for the solids' reaction
+        RELAXATION = 39, // [1/s]
+        JX = 40,         // [m/s]   what the liquid gave since forcing was set: impulse over mass
+        ADDED_MASS = 43, // [-]     over the solid's own
+        response_end = 44
     };
-    static constexpr std::size_t rest = field_count - record;
+    static constexpr std::size_t rest = rest_end - record, response = response_end - rest_end;
 
     explicit Population(std::size_t count)
         : size_(count), values_(count * record), rest_(count * rest), id_(count), laps_(count) {}
@@ -51,10 +59,12 @@ public:
     [[nodiscard]] const Real* values() const noexcept { return values_.data(); }
 
     [[nodiscard]] Real* at(Field f, std::size_t i) noexcept {
-        return f < record ? &values_[i * record + f] : &rest_[i * rest + (f - record)];
+        return const_cast<Real*>(std::as_const(*this).at(f, i));
     }
     [[nodiscard]] const Real* at(Field f, std::size_t i) const noexcept {
-        return f < record ? &values_[i * record + f] : &rest_[i * rest + (f - record)];
+        if (f < record) return &values_[i * record + f];
+        if (f < rest_end) return &rest_[i * rest + (f - record)];
+        return &response_[i * response + (f - rest_end)];
     }
     [[nodiscard]] Vec3 vector(Field f, std::size_t i) const noexcept {
         const Real* v = at(f, i);
@@ -74,7 +84,10 @@ public:
     [[nodiscard]] std::vector<std::int32_t>& laps() noexcept { return laps_; }
     [[nodiscard]] const std::vector<std::int32_t>& laps() const noexcept { return laps_; }
 
-    /// visit(values) for every array of reals, in a fixed sequence.
+    /// Make room for the fields of a liquid that responds.
+    void add_response() { response_.resize(size_ * response); }
+
+    /// visit(values) for every array of reals that is part of the state, in a fixed sequence.
     template <class Visit>
     void for_each_array(const Visit& visit) {
         visit(values_);
@@ -85,6 +98,7 @@ public:
     void permute(const std::vector<Index>& order) {
         permute(order, values_, record);
         permute(order, rest_, rest);
+        if (!response_.empty()) permute(order, response_, response);
         permute(order, id_, 1);
         permute(order, laps_, 1);
     }
@@ -100,7 +114,7 @@ public:
 
 private:
     std::size_t size_;
-    AlignedVector<Real> values_, rest_;
+    AlignedVector<Real> values_, rest_, response_;
     std::vector<Index> id_;
     std::vector<std::int32_t> laps_;
 };

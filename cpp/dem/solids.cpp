@@ -105,23 +105,42 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
 }
 
 void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
-                         std::span<const Real> drag_rate) {
+                         std::span<const Real> drag_rate, std::span<const Vec3> liquid_acceleration,
+                         std::span<const Real> relaxation, std::span<const Real> added_mass) {
     const std::size_t n = size();
     require(acceleration.size() == n, "set_forcing: acceleration must have shape (n, 3)");
     require(liquid_velocity.size() == drag_rate.size() &&
                 (drag_rate.empty() || drag_rate.size() == n),
             "set_forcing: liquid_velocity (n, 3) and drag_rate (n,) come together");
-    medium_ = drag_rate.empty() ? Medium::dry : Medium::liquid;
+    require(liquid_acceleration.size() == relaxation.size() &&
+                (relaxation.empty() || relaxation.size() == drag_rate.size()),
+            "set_forcing: liquid_acceleration (n, 3) and relaxation (n,) come together, and with "
+            "drag_rate");
+    require(added_mass.empty() || added_mass.size() == drag_rate.size(),
+            "set_forcing: added_mass (n,) comes with drag_rate");
+    for (const Real k : drag_rate) require(!(k < 0), "set_forcing: drag_rate must be >= 0 1/s");
+    for (const Real l : relaxation) require(!(l < 0), "set_forcing: relaxation must be >= 0 1/s");
+    for (const Real c : added_mass) require(!(c < 0), "set_forcing: added_mass must be >= 0");
+    // added mass needs the acceleration of the liquid, were it zero
+    medium_ = drag_rate.empty()                          ? Medium::dry
+              : relaxation.empty() && added_mass.empty() ? Medium::liquid
+                                                         : Medium::responding_liquid;
+    const bool responds = medium_ == Medium::responding_liquid;
+    if (responds) solids_.add_response();
     forcing_time_ = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const Index id = solids_.id()[i];
         const Real k = drag_rate.empty() ? 0 : drag_rate[id];
-        require(!(k < 0), "set_forcing: drag_rate must be >= 0 1/s");
         const Vec3 u = drag_rate.empty() ? Vec3{} : liquid_velocity[id];
-        solids_.set(P::AX, i, acceleration[id] + k * u);
+        solids_.set(P::AX, i, responds ? acceleration[id] : acceleration[id] + k * u);
         solids_.set(P::UX, i, u);
         *solids_.at(P::DRAG, i) = k;
         solids_.set(P::PX, i, {});
+        if (!responds) continue;
+        solids_.set(P::BX, i, relaxation.empty() ? Vec3{} : liquid_acceleration[id]);
+        *solids_.at(P::RELAXATION, i) = relaxation.empty() ? 0 : relaxation[id];
+        solids_.set(P::JX, i, {});
+        *solids_.at(P::ADDED_MASS, i) = added_mass.empty() ? 0 : added_mass[id];
     }
 }
 
@@ -142,22 +161,35 @@ AdvanceReport Solids::advance(Real dt, std::size_t steps) {
     return report;
 }
 
+/// choose<medium>() for the medium at hand.
+template <class Choose>
+auto Solids::in_medium(const Choose& choose) const {
+    switch (medium_) {
+    case Medium::liquid:
+        return choose.template operator()<Medium::liquid>();
+    case Medium::responding_liquid:
+        return choose.template operator()<Medium::responding_liquid>();
+    case Medium::dry:
+        break;
+    }
+    return choose.template operator()<Medium::dry>();
+}
+
 void Solids::kick_all(Real dt) {
     forcing_time_ += dt;
+    const auto run = in_medium([]<Medium medium> {
+        return static_cast<void (*)(Population&, std::size_t, std::size_t, Real)>(&kick<medium>);
+    });
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
         Block& block = blocks_[b];
-        if (medium_ == Medium::dry)
-            kick<Medium::dry>(solids_, block.begin, block.end, dt);
-        else
-            kick<Medium::liquid>(solids_, block.begin, block.end, dt);
+        run(solids_, block.begin, block.end, dt);
         block.wall_impulse += dt * block.wall_force;
     });
 }
 
 void Solids::move(Real kick_time, Real dt) {
     forcing_time_ += kick_time;
-    const auto run =
-        medium_ == Medium::dry ? &kick_and_drift<Medium::dry> : &kick_and_drift<Medium::liquid>;
+    const auto run = in_medium([]<Medium medium> { return &kick_and_drift<medium>; });
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
         Block& block = blocks_[b];
         block.wall_impulse += kick_time * block.wall_force;
@@ -467,12 +499,28 @@ std::vector<Real> Solids::mass() const {
         [&](std::size_t i) { return 1 / *solids_.at(P::INVERSE_MASS, i); });
 }
 
-/// The sum over kicks of m k (u - v) dt, as each implicit kick applied it.
+/// The sum over kicks of m k (u - v) dt, as each implicit kick applied it, and of the part of added
+/// mass.
 std::vector<Vec3> Solids::drag_impulse() const {
     return in_callers_order<Vec3>([&](std::size_t i) {
+        if (medium_ == Medium::responding_liquid)
+            return (1 / *solids_.at(P::INVERSE_MASS, i)) * solids_.vector(P::JX, i);
         const Real rate = *solids_.at(P::DRAG, i) / *solids_.at(P::INVERSE_MASS, i);
         return rate * (forcing_time_ * solids_.vector(P::UX, i) - solids_.vector(P::PX, i));
     });
+}
+
+std::vector<Vec3> Solids::mean_velocity() const {
+    require(medium_ != Medium::dry, "mean_velocity: set_forcing must be given a liquid");
+    return in_callers_order<Vec3>([&](std::size_t i) {
+        if (forcing_time_ == 0) return solids_.vector(P::VX, i);
+        return (1 / forcing_time_) * solids_.vector(P::PX, i);
+    });
+}
+
+std::vector<Vec3> Solids::liquid_velocity() const {
+    require(medium_ != Medium::dry, "liquid_velocity: set_forcing must be given a liquid");
+    return in_callers_order<Vec3>([&](std::size_t i) { return solids_.vector(P::UX, i); });
 }
 
 Vec3 Solids::wall_impulse() const {
@@ -656,6 +704,20 @@ void Solids::exchange(Archive& archive) {
     }
 }
 
+/// The forcing of the same solids in another order, and its sums.
+void Solids::take_forcing(const Solids& from) {
+    std::vector<std::size_t> place(size());
+    for (std::size_t i = 0; i < size(); ++i) place[from.solids_.id()[i]] = i;
+    const auto take = [&](Population::Field row, std::size_t i) {
+        store(solids_.at(row, i), load(from.solids_.at(row, place[solids_.id()[i]])));
+    };
+    for (std::size_t i = 0; i < size(); ++i) {
+        for (const auto row : {P::AX, P::PX, P::UX}) take(row, i);
+        if (medium_ != Medium::responding_liquid) continue;
+        for (const auto row : {P::BX, P::JX}) take(row, i);
+    }
+}
+
 Solids::Snapshot Solids::snapshot() const {
     Snapshot out;
     Writer writer{out};
@@ -675,6 +737,7 @@ void Solids::restore(const Snapshot& snapshot) {
     require(reader.real == snapshot.reals.size() && reader.integer + 1 == integers.size() &&
                 restored.radius() == radius() && restored.mass() == mass(),
             "restore: the snapshot belongs to another population");
+    restored.take_forcing(*this);
     *this = std::move(restored);
     link_blocks();
 }

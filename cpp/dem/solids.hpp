@@ -53,10 +53,14 @@ public:
            const ContactModel& between_solids, const ContactModel& at_walls,
            std::vector<geometry::Wall> walls, Real period, int threads);
 
-    /// From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v). Spans may be
-    /// empty: no drag. Starts the sums of `drag_impulse` anew.
+    /// From now on dv/dt = F/m + acceleration + drag_rate (u - v), u = liquid_velocity. With the
+    /// last two spans the liquid responds: du/dt = liquid_acceleration - relaxation (u - v), from
+    /// liquid_velocity on. `added_mass` (over the solid's own) adds added_mass (du/dt - dv/dt) to
+    /// dv/dt. Spans may be empty: no added mass, no response, no drag. Starts `drag_impulse` and
+    /// `mean_velocity` anew.
     void set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
-                     std::span<const Real> drag_rate);
+                     std::span<const Real> drag_rate, std::span<const Vec3> liquid_acceleration,
+                     std::span<const Real> relaxation, std::span<const Real> added_mass);
 
     /// `steps` steps of velocity Verlet of `dt` [s].
     AdvanceReport advance(Real dt, std::size_t steps);
@@ -68,14 +72,18 @@ public:
     [[nodiscard]] std::vector<Real> radius() const;   // [m]
     [[nodiscard]] std::vector<Real> mass() const;     // [kg]
     [[nodiscard]] std::vector<std::int64_t> laps() const;
-    [[nodiscard]] std::vector<Vec3> drag_impulse() const; // [N s] on each solid since set_forcing
+    /// Of drag and added mass on each solid since set_forcing [N s].
+    [[nodiscard]] std::vector<Vec3> drag_impulse() const;
+    /// Mean of v over the kicks since set_forcing [m/s]; only in a liquid.
+    [[nodiscard]] std::vector<Vec3> mean_velocity() const;
+    [[nodiscard]] std::vector<Vec3> liquid_velocity() const; // [m/s] now, at each solid
     [[nodiscard]] Vec3 wall_impulse() const;   // [N s] of walls on solids since the start
     [[nodiscard]] Real kinetic_energy() const; // [J] of translation and spin
     [[nodiscard]] Real elastic_energy() const; // [J]
     [[nodiscard]] ContactTable contacts() const;
 
     /// The exact state, as two rows of numbers whose layout is private: restoring it continues
-    /// bit-equal. Forcing is not part of it.
+    /// bit-equal. Forcing and its sums are not part of it: they stay as they are.
     struct Snapshot {
         std::vector<Real> reals;
         std::vector<std::int64_t> integers;
@@ -84,6 +92,8 @@ public:
     void restore(const Snapshot& snapshot);
 
 private:
+    template <class Choose>
+    [[nodiscard]] auto in_medium(const Choose& choose) const;
     void kick_all(Real dt);
     void move(Real kick_time, Real dt);
     void wall_forces(Block& block, Real dt);
@@ -96,6 +106,7 @@ private:
     void set_inner_skin(Real skin);
     void link_blocks();
     [[nodiscard]] bool finite() const noexcept;
+    void take_forcing(const Solids& from);
     template <class Archive>
     void exchange(Archive& archive);
     template <class Visit>

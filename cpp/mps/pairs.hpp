@@ -144,6 +144,16 @@ public:
         return {weights_.get(), neighbors_.entries()};
     }
 
+    /// Multiply W, and not W / r^2, by the mean of a factor (rows,) at the ends of each pair: the
+    /// list is then the matrix of an equation whose coefficient varies.
+    void scale_weights(std::span<const Real> factor, int threads) {
+        const std::span<const Index> inner = neighbors_.inner(), column = neighbors_.column();
+        parallel_for(rows(), threads, [&](std::size_t i) {
+            for (Index k = neighbors_.first(i); k < inner[i]; ++k)
+                weights_[k] *= static_cast<float>((factor[i] + factor[column[k]]) / 2);
+        });
+    }
+
     template <Among among, class Visit>
     void each(std::size_t i, const Visit& visit) const {
         const auto [first, last] = range<among>(i);

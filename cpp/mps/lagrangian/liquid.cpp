@@ -6,6 +6,7 @@
 #include "mps/gradient.hpp"
 #include "mps/least_squares_laplacian.hpp"
 #include "mps/number_density.hpp"
+#include "mps/relative_convection.hpp"
 #include "mps/shear_rate.hpp"
 #include "mps/shifting.hpp"
 #include "mps/viscosity.hpp"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 namespace mpsdem::mps::lagrangian {
@@ -25,9 +27,11 @@ constexpr Real viscous_limit = 0.1; // [-] largest nu dt / dx^2
 constexpr Real most_substeps = 1e4; // [-] of one call; beyond it the speeds have run away
 constexpr int most_halvings = 5;    // [-] of one call
 constexpr Real spare_places = 0.05; // [-] of the liquid, for what a plate brings in
-// [-] of a section's difference from the plate's velocity, made good in a step: the disorder of the
-// particles that come and go is not followed, and a lasting difference does not build up
+// [-] of a section's difference from the flux that it must have, made good in a step: the disorder
+// of the particles that come and go is not followed, and a lasting difference does not build up
 constexpr Real flux_feedback = 0.3;
+constexpr Real fastest_over_bulk = 1.4; // [-] in clear turbulent flow; beyond it, solids narrow it
+constexpr int section_turns = 4;  // [-] of the same, where solids part the flux along the pipe
 constexpr Real outlet_hold = 100; // [-] Dirichlet part over n0: p' is held to zero within a percent
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
 
@@ -82,6 +86,18 @@ Real Liquid::mean_in_bore(const Value& value) const {
     return sum_of(value) / sum_of([](std::size_t) { return Real{1}; });
 }
 
+/// Means of an axial flux over pieces of a length, where it has to be held: with a plate, or with
+/// solids.
+template <class Flux>
+AxialBins Liquid::flux_of_sections(const Flux& flux) const {
+    AxialBins bins = ends_.bins(section_length());
+    if (ends_.periodic() && !loaded()) return bins;
+    for (std::size_t i = 0; i < liquid_count_; ++i)
+        if (moves(i)) bins.add(position_[i].x, flux(i));
+    bins.take_means();
+    return bins;
+}
+
 Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
                std::span<const Kind> kind, Real pipe_radius, Real pipe_length,
                const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
@@ -125,6 +141,8 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
         }
     }
     places_ = size();
+    volume_.assign(liquid_count_, std::numbers::pi * pipe_radius * pipe_radius * pipe_length /
+                                      static_cast<Real>(liquid_count_));
     if (plate)
         places_ += static_cast<std::size_t>(spare_places * static_cast<Real>(liquid_count_)) + 1;
     for (std::size_t i = liquid_count_; i < size(); ++i) {
@@ -160,9 +178,15 @@ void Liquid::drive(const Drive& drive) {
     drive_ = drive;
 }
 
-AdvanceReport Liquid::advance(Real dt) {
+AdvanceReport Liquid::advance(Real dt, Loading* loading) {
     require(dt > 0, "advance: dt must be > 0 s");
+    require(loading == nullptr || ends_.periodic(), "advance: no solids in a liquid with a plate");
     AdvanceReport report;
+    if (loading == nullptr) {
+        eps_.clear();
+        volume_flux_.clear();
+        acceleration_of_last_.clear();
+    }
     Real longest = dt;
     for (Real left = dt; left > 1e-9 * dt && report.sound;) {
         const Real count = std::ceil(left / std::min(stable_step(), longest) - 1e-9);
@@ -171,7 +195,7 @@ AdvanceReport Liquid::advance(Real dt) {
             break;
         }
         const Real length = left / std::max(count, 1.);
-        if (!step(length, report)) {
+        if (!step(length, report, loading, dt - left)) {
             longest = length / 2;
             report.sound = ++report.halvings <= most_halvings;
             continue;
@@ -181,12 +205,15 @@ AdvanceReport Liquid::advance(Real dt) {
         report.mean_gradient += gradient_ * length / dt;
         report.friction += friction_ * length / dt;
         report.unexplained += unexplained_ * length / dt;
+        report.convection_error += convection_error_ * length / dt;
     }
     return report;
 }
 
 Real Liquid::dynamic_pressure() const noexcept {
-    return density_ * drive_.bulk_velocity * drive_.bulk_velocity;
+    Real speed = std::max(std::abs(drive_.bulk_velocity), numerics_.speed);
+    if (loaded()) speed = std::max(speed, fastest_ / fastest_over_bulk);
+    return density_ * speed * speed;
 }
 
 Real Liquid::fastest() const {
@@ -204,14 +231,25 @@ Real Liquid::stable_step() const {
 }
 
 /// One substep; `false` and the state as before where the pressure could not be solved.
-bool Liquid::step(Real dt, AdvanceReport& report) {
+bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed) {
     sort();
     find_pairs();
+    const Real carried_to = mean_momentum();
+    load_ = loading == nullptr ? Load{} : loading->before(points(), elapsed, dt);
     velocity_before_ = velocity_;
-    const Real before = bulk_velocity();
-    const AxialBins bins_before = axial_velocity();
+    const Real before = mean_momentum();
+    const AxialBins bins_before = flux_of_sections([&](std::size_t i) { return flux_before(i); });
     predict(dt, report);
-    friction_ = density_ * (before - bulk_velocity()) / dt;
+    friction_ = density_ * (before - mean_momentum()) / dt;
+    if (loaded()) {
+        fastest_ = fastest();
+        // What the particles bring along by their motion, and the liquid that passes them, only
+        // moves momentum from place to place: what is not so is given back.
+        const Real brought = add_relative_convection(dt) + (eps_.empty() ? 0 : before - carried_to);
+        convection_error_ = density_ * brought / dt;
+        take_load(dt, brought);
+        hold_sections(dt, bins_before);
+    }
     if (!solve_pressure(dt, report)) {
         velocity_ = velocity_before_;
         return false;
@@ -219,7 +257,25 @@ bool Liquid::step(Real dt, AdvanceReport& report) {
     correct(dt, bins_before);
     move(dt, report);
     if (!ends_.periodic()) move_plate(dt, report);
+    if (loaded()) leave_load(dt, *loading);
     return true;
+}
+
+/// Share of the liquid at a particle, of the load where there is one [-].
+Real Liquid::liquid_share(std::size_t i) const noexcept {
+    if (loaded()) return load_.void_fraction[i];
+    return eps_.empty() ? 1 : eps_[i];
+}
+
+/// Axial flux of the load under way, or of none, with the velocity of the substep's start [m/s].
+Real Liquid::flux_before(std::size_t i) const noexcept {
+    const Real u = velocity_before_[i].x;
+    return loaded() ? load_.void_fraction[i] * u + load_.solids_flux[i].x : u;
+}
+
+/// Mean of eps u_x in the bore [m/s].
+Real Liquid::mean_momentum() const {
+    return mean_in_bore([&](std::size_t i) { return liquid_share(i) * velocity_[i].x; });
 }
 
 /// Put neighbors in space near in memory.
@@ -230,6 +286,11 @@ void Liquid::sort() {
     reorder(velocity_, order_, threads, shift_);
     reorder(pressure_, order_, threads, scalar_);
     reorder(id_, order_, threads, id_memory_);
+    load_ = {};
+    if (eps_.empty()) return;
+    reorder(eps_, order_, threads, scalar_);
+    reorder(volume_flux_, order_, threads, shift_);
+    reorder(acceleration_of_last_, order_, threads, shift_);
 }
 
 neighbors::Groups Liquid::groups() const {
@@ -246,8 +307,12 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
     acceleration_.resize(liquid_count_);
     if (turbulent()) {
         find_eddy_viscosity(dt, report);
+        for (std::size_t i = 0; i < load_.void_fraction.size(); ++i)
+            eddy_viscosity_[i] *= load_.void_fraction[i];
         viscous_acceleration(reference_, pairs_, eddy_viscosity_, velocity_, threads,
                              acceleration_);
+        for (std::size_t i = 0; i < load_.void_fraction.size(); ++i)
+            acceleration_[i] = (1 / load_.void_fraction[i]) * acceleration_[i];
         add_wall_shear();
     } else {
         deficient_.resize(liquid_count_);
@@ -260,6 +325,89 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
         if (moves(i)) velocity_[i] += dt * acceleration_[i];
     });
+}
+
+/// What the liquid brings along that passes its particles; returns by how much that changed the
+/// mean of eps u_x in the bore, which it should not [m/s].
+Real Liquid::add_relative_convection(Real dt) {
+    const Load& load = load_;
+    const int threads = numerics_.threads;
+    shift_.resize(liquid_count_);
+    parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        const Real eps = load.void_fraction[i];
+        shift_[i] = eps * ((1 - eps) * velocity_before_[i] - load.solids_flux[i]); // eps (u - w)
+    });
+    relative_convection(reference_, pairs_, shift_, load.void_fraction, velocity_before_, threads,
+                        acceleration_);
+    parallel_for(liquid_count_, threads,
+                 [&](std::size_t i) { velocity_[i] += dt * acceleration_[i]; });
+    return dt * mean_in_bore([&](std::size_t i) { return liquid_share(i) * acceleration_[i].x; });
+}
+
+/// From the liquid's velocity to the volume flux, with the drag of the solids in it; the list
+/// becomes the matrix of the damped pressure.
+void Liquid::take_load(Real dt, Real brought) {
+    const Load& load = load_;
+    const int threads = numerics_.threads;
+    damping_.assign(pairs_.rows(), 1);
+    parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        const Real eps = load.void_fraction[i];
+        damping_[i] = 1 / (1 + dt * load.drag[i] / (density_ * eps));
+        const Vec3 momentum = eps * velocity_[i] - Vec3{brought, 0, 0};
+        velocity_[i] = damping_[i] * (momentum + (dt / density_) * load.drag_of_solids[i]) +
+                       load.solids_flux[i];
+    });
+    // A wall's share in the pressure is damped as the liquid's before it.
+    parallel_for(wall_count_, threads, [&](std::size_t w) {
+        Real sum = 0, weights = 0;
+        pairs_.each<Among::liquid>(liquid_count_ + w, [&](const Pair& p) {
+            sum += p.weight * damping_[p.j];
+            weights += p.weight;
+        });
+        if (weights > 0) damping_[liquid_count_ + w] = sum / weights;
+    });
+    pairs_.scale_weights(damping_, threads);
+}
+
+/// The axial gradient, a function of x, that gives each section back what drag and walls took from
+/// its flux in this step, and brings it nearer to the flux of the bore.
+void Liquid::hold_sections(Real dt, const AxialBins& before) {
+    const AxialBins damping = flux_of_sections([&](std::size_t i) { return damping_[i]; });
+    const Real aim = mean_in_bore([&](std::size_t i) { return before.at(position_[i].x); });
+    scalar_.assign(liquid_count_, 0);
+    // The broken line through a section's means has other means itself: what is left of them goes
+    // the same way again.
+    for (int turn = 0; turn < section_turns; ++turn) {
+        const AxialBins lost = flux_of_sections([&](std::size_t i) {
+            const Real was = flux_before(i);
+            return was + flux_feedback * (aim - was) - velocity_[i].x;
+        });
+        parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
+            const Real x = position_[i].x, push = lost.at(x) / damping.at(x);
+            scalar_[i] += push;
+            velocity_[i].x += damping_[i] * push;
+        });
+    }
+    gradient_ = density_ / dt * mean_in_bore([&](std::size_t i) { return scalar_[i]; });
+}
+
+/// From the volume flux back to the liquid's velocity; what the solids still owe is paid.
+void Liquid::leave_load(Real dt, Loading& loading) {
+    const Load& load = load_;
+    const int threads = numerics_.threads;
+    volume_flux_.resize(liquid_count_);
+    acceleration_of_last_.resize(liquid_count_);
+    eps_.assign(load.void_fraction.begin(), load.void_fraction.end());
+    parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        volume_flux_[i] = velocity_[i];
+        velocity_[i] = (1 / eps_[i]) * (velocity_[i] - load.solids_flux[i]);
+        const Vec3 drag =
+            (1 / (density_ * eps_[i])) * (load.drag_of_solids[i] - load.drag[i] * velocity_[i]);
+        acceleration_of_last_[i] = (1 / dt) * (velocity_[i] - velocity_before_[i]) - drag;
+    });
+    const std::span<const Vec3> owed = loading.owed(liquid_velocity());
+    parallel_for(liquid_count_, threads,
+                 [&](std::size_t i) { velocity_[i] += (1 / (density_ * eps_[i])) * owed[i]; });
 }
 
 /// Within a radius of the plate, where liquid is pressed together and turned round, polynomials
@@ -368,7 +516,7 @@ void Liquid::find_known() {
 /// amplify with the length of the pipe. In a full rigid pipe the flux through every section is the
 /// same, and a plate's too: the source's mean over each diameter of length is zero, and is made so.
 void Liquid::remove_axial_bias() {
-    AxialBins bias = ends_.bins(2 * pipe_radius_);
+    AxialBins bias = ends_.bins(section_length());
     for (std::size_t i = 0; i < liquid_count_; ++i)
         if (moves(i)) bias.add(pairs_.position(i).x, right_hand_side_[i]);
     bias.take_means();
@@ -383,9 +531,9 @@ void Liquid::cut_pressure(AdvanceReport& report) {
     const auto count = static_cast<Real>(liquid_count_);
     const Real mean =
         ordered_sum(liquid_count_, threads, [&](std::size_t i) { return pressure_[i]; }) / count;
-    const Real limit = turbulent() && dynamic_pressure() > 0
-                           ? numerics_.pressure_limit * dynamic_pressure()
-                           : std::numeric_limits<Real>::infinity();
+    Real limit = std::numeric_limits<Real>::infinity();
+    if (turbulent() && dynamic_pressure() > 0)
+        limit = numerics_.pressure_limit * dynamic_pressure() + pressure_of_load();
     report.clamped +=
         count_liquid([&](std::size_t i) { return std::abs(pressure_[i] - mean) > limit; });
     const Real level = ends_.periodic() ? 0 : mean;
@@ -399,6 +547,16 @@ void Liquid::cut_pressure(AdvanceReport& report) {
                                                 return change * change;
                                             }) /
                                 count);
+}
+
+/// What the solids' drag can hold over a radius of the pipe [Pa].
+Real Liquid::pressure_of_load() const {
+    Real square = 0;
+    for (std::size_t i = 0; i < load_.drag.size(); ++i) {
+        const Vec3 force = load_.drag_of_solids[i] - load_.drag[i] * velocity_before_[i];
+        square = std::max(square, dot(force, force));
+    }
+    return std::sqrt(square) * pipe_radius_;
 }
 
 /// A ghost has the pressure of the wall before it.
@@ -416,11 +574,12 @@ void Liquid::extrapolate_pressure() {
 void Liquid::correct(Real dt, const AxialBins& before) {
     background_gradient(numerics_.pairing, numerics_.background * dynamic_pressure(), wall_,
                         reference_, pairs_, pressure_, numerics_.threads, acceleration_);
-    const Real bulk = bulk_velocity();
+    const auto damping = [&](std::size_t i) { return loaded() ? damping_[i] : 1; };
     parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
-        if (moves(i)) velocity_[i] -= (dt / density_) * acceleration_[i];
+        if (moves(i)) velocity_[i] -= (damping(i) * dt / density_) * acceleration_[i];
     });
-    unexplained_ = density_ * (bulk_velocity() - bulk) / dt;
+    const Real mean = mean_in_bore([&](std::size_t i) { return acceleration_[i].x; });
+    unexplained_ = -mean;
     if (ends_.periodic())
         hold_bulk_velocity(dt);
     else
@@ -429,16 +588,23 @@ void Liquid::correct(Real dt, const AxialBins& before) {
 
 /// The mean axial gradient: given, or what holds the bulk velocity.
 void Liquid::hold_bulk_velocity(Real dt) {
-    gradient_ = drive_.pressure_gradient ? *drive_.pressure_gradient
-                                         : density_ * (drive_.bulk_velocity - bulk_velocity()) / dt;
-    const Real kick = dt * gradient_ / density_;
-    parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) { velocity_[i].x += kick; });
+    const auto bulk = [&] { return mean_in_bore([&](std::size_t i) { return velocity_[i].x; }); };
+    const Real known = loaded() ? gradient_ : 0; // that of the sections
+    Real open = 1;                               // of the liquid to a gradient
+    if (loaded()) open = mean_in_bore([&](std::size_t i) { return damping_[i]; });
+    const Real missing = drive_.pressure_gradient
+                             ? *drive_.pressure_gradient - known
+                             : density_ * (drive_.bulk_velocity - bulk()) / (dt * open);
+    gradient_ = known + missing;
+    const Real kick = dt * missing / density_;
+    parallel_for(liquid_count_, numerics_.threads,
+                 [&](std::size_t i) { velocity_[i].x += loaded() ? damping_[i] * kick : kick; });
 }
 
 /// The axial gradient that gives each section back what it lost in this step, and brings it nearer
 /// to the plate's velocity. The loss of pressure along the bore is its mean and what p' falls.
 void Liquid::hold_flux_of_plate(Real dt, const AxialBins& before) {
-    const AxialBins after = axial_velocity();
+    const AxialBins after = flux_of_sections([&](std::size_t i) { return velocity_[i].x; });
     const Real aim = ends_.plate_velocity();
     scalar_.resize(liquid_count_);
     parallel_for(liquid_count_, numerics_.threads, [&](std::size_t i) {
@@ -456,16 +622,6 @@ void Liquid::hold_flux_of_plate(Real dt, const AxialBins& before) {
     const Real spread = mean_in_bore(
         [&](std::size_t i) { return (position_[i].x - middle) * (position_[i].x - middle); });
     gradient_ = density_ * kick / dt - together / spread;
-}
-
-/// Mean axial velocity of each diameter of length, where a plate has to hold it.
-AxialBins Liquid::axial_velocity() const {
-    AxialBins bins = ends_.bins(2 * pipe_radius_);
-    if (ends_.periodic()) return bins;
-    for (std::size_t i = 0; i < liquid_count_; ++i)
-        if (moves(i)) bins.add(position_[i].x, velocity_[i].x);
-    bins.take_means();
-    return bins;
 }
 
 /// Move with the velocity, and shift towards where particles are few. The shift goes with the way
@@ -617,12 +773,22 @@ std::size_t Liquid::count_in_bore() const {
     return count_liquid([&](std::size_t i) { return ends_.in_bore(position_[i]); });
 }
 
+std::vector<Real> Liquid::void_fraction() const {
+    std::vector<Real> eps(size(), 1);
+    std::ranges::copy(eps_, eps.begin());
+    return in_given_order<Real>(eps, id_, places_, nan);
+}
+
 Real Liquid::bulk_velocity() const {
-    return mean_in_bore([&](std::size_t i) { return velocity_[i].x; });
+    const std::vector<Vec3>& flux = volume_flux_.empty() ? velocity_ : volume_flux_;
+    return mean_in_bore([&](std::size_t i) { return flux[i].x; });
 }
 
 Real Liquid::kinetic_energy() const {
-    return mean_in_bore([&](std::size_t i) { return dot(velocity_[i], velocity_[i]) / 2; });
+    const auto share = [&](std::size_t i) { return eps_.empty() ? 1 : eps_[i]; };
+    return mean_in_bore(
+               [&](std::size_t i) { return share(i) * dot(velocity_[i], velocity_[i]) / 2; }) /
+           mean_in_bore(share);
 }
 
 /// Number density over its mean in the liquid, of liquid and wall as they are now.
@@ -651,6 +817,10 @@ void Liquid::restore(const Snapshot& s) {
     require(alike && s.velocity.size() == n && s.pressure.size() == n && s.id.size() == n &&
                 std::ranges::all_of(s.id, [&](Index id) { return id < places_; }),
             "restore: the snapshot belongs to another liquid");
+    const std::size_t in_load = s.void_fraction.size();
+    require((in_load == 0 || in_load == liquid_count_) && s.acceleration.size() == in_load &&
+                s.flux.size() == in_load,
+            "restore: the snapshot's load belongs to another liquid");
     ends_.restore(s.ends); // first, as it may refuse
     resize_liquid(n - solids());
     if (!ends_.periodic()) wall_.place_plate(ends_.face());
@@ -658,6 +828,9 @@ void Liquid::restore(const Snapshot& s) {
     velocity_ = s.velocity;
     pressure_ = s.pressure;
     id_ = s.id;
+    acceleration_of_last_ = s.acceleration;
+    volume_flux_ = s.flux;
+    eps_ = s.void_fraction;
 }
 
 } // namespace mpsdem::mps::lagrangian

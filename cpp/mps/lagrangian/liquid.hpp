@@ -5,6 +5,7 @@
 #include "mps/lagrangian/bore.hpp"
 #include "mps/lagrangian/ends.hpp"
 #include "mps/lagrangian/pressure_equation.hpp"
+#include "mps/load.hpp"
 #include "mps/reference_density.hpp"
 #include "mps/turbulence.hpp"
 #include "mps/wall_function.hpp"
@@ -38,6 +39,8 @@ struct Numerics {
                             //     for each spacing that the fastest liquid goes
     Pairing pairing = Pairing::conserving;
     Real pressure_limit = 0.25; // [-] largest |p'| over rho U^2; beyond it, clamped and counted
+    Real speed = 0; // [m/s] U of the background and of the limit, where solids stir a liquid that
+                    //       hardly flows; at least the bulk velocity is taken
     Solver solver = Solver::two_level;
     int threads = 1;
 };
@@ -47,10 +50,11 @@ struct AdvanceReport {
     int substeps = 0;
     int halvings = 0; // substeps halved after a failed solve
     SolveTally solve;
-    Real mean_gradient = 0;  // [Pa/m] loss of pressure along the pipe, mean over the call
-    Real friction = 0;       // [Pa/m] that walls and viscosity take up, mean over the call
-    Real unexplained = 0;    // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
-    std::size_t clamped = 0; // pressures cut to the limit
+    Real mean_gradient = 0;    // [Pa/m] loss of pressure along the pipe, mean over the call
+    Real friction = 0;         // [Pa/m] that walls and viscosity take up, mean over the call
+    Real unexplained = 0;      // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
+    Real convection_error = 0; // [Pa/m] that particles failed to carry along, and were given back
+    std::size_t clamped = 0;   // pressures cut to the limit
     std::size_t viscosity_capped = 0; // eddy viscosities cut to what the step can bear
     std::size_t shifts_cut = 0;       // shifts cut to their longest
     std::size_t deficient = 0;        // particles whose neighbors fix no Laplacian: no viscosity
@@ -83,6 +87,17 @@ struct AdvanceReport {
 /// liquid of the mean flow, not of its eddies. Laminar flow has no such damping: from a Reynolds
 /// number of a few hundred on a swirl lives on.
 ///
+/// With solids in it (`Load`), the particles go on to fill the bore evenly and move with the volume
+/// flux w = eps u + s, which has no divergence, while the liquid passes them with u - w:
+///
+///   u* = u + dt (viscous terms, div(eps nu grad u) / eps, + wall shear - (u - w) . grad u)
+///   w* = a (eps u* + dt D / rho) + s,    a = 1 / (1 + dt beta / (rho eps))    drag implicit
+///   div(a grad p') = (rho / dt) div w*
+///   w  = w* + a dt / rho (G - grad p'),  u = (w - s) / eps,  x <- x + dt w + shift
+///
+/// so that the number density stays that of the clear liquid, and d(eps)/dt need not be found. G is
+/// then a function of x that gives each section back what drag and walls took from its flux.
+///
 /// Sources: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205; shifting after Xu, Stansby &
 /// Laurence (2009), doi:10.1016/j.jcp.2009.05.032.
 class Liquid {
@@ -94,8 +109,9 @@ public:
            const std::optional<PushPlate>& plate, Real density, Real kinematic_viscosity,
            Real roughness, Flow flow, const Drive& drive, const Numerics& numerics);
 
-    /// Advance by dt [s], in as few substeps as the Courant number and viscosity allow.
-    AdvanceReport advance(Real dt);
+    /// Advance by dt [s], in as few substeps as the Courant number and viscosity allow; `loading`
+    /// tells of the solids in the liquid, if there are any. Not with a plate.
+    AdvanceReport advance(Real dt, Loading* loading = nullptr);
 
     /// Drive the liquid otherwise from now on. A plate drives it alone.
     void drive(const Drive& drive);
@@ -108,6 +124,14 @@ public:
         return std::span(velocity_).first(liquid_count_);
     }
     [[nodiscard]] Real period() const noexcept { return ends_.period(); } // [m] 0: none
+    /// Of the same: the acceleration by all but the drag of solids, over the last substep.
+    [[nodiscard]] std::span<const Vec3> liquid_acceleration() const noexcept { // [m/s2]
+        return acceleration_of_last_;
+    }
+    [[nodiscard]] LiquidPoints points() const noexcept {
+        return {liquid_position(), volume_, period()};
+    }
+    [[nodiscard]] Real density() const noexcept { return density_; } // [kg/m3]
 
     /// Particles there may be: each has its place in the arrays below, in the order they were
     /// given. A place that no particle holds at the moment is liquid, with NaN for a position.
@@ -120,7 +144,8 @@ public:
     [[nodiscard]] std::vector<Kind> kind() const;
     [[nodiscard]] std::vector<Real> pressure() const;      // [Pa] p'
     [[nodiscard]] std::vector<Real> density_ratio() const; // [-] n / mean n, as they lie now
-    [[nodiscard]] Real bulk_velocity() const;              // [m/s] mean of the particles
+    [[nodiscard]] std::vector<Real> void_fraction() const; // [-] of the last substep
+    [[nodiscard]] Real bulk_velocity() const; // [m/s] flow rate of liquid and solids over the bore
     [[nodiscard]] Real pressure_gradient() const noexcept { return gradient_; } // [Pa/m] last step
     [[nodiscard]] Real wall_shear() const noexcept { return wall_shear_; }      // [Pa] mean
     [[nodiscard]] Real kinetic_energy() const;                                  // [J/kg] per mass
@@ -135,9 +160,12 @@ public:
         std::vector<Real> pressure;
         std::vector<Index> id;
         std::vector<Real> ends;
+        std::vector<Vec3> acceleration, flux; // of the liquid alone, where solids load it
+        std::vector<Real> void_fraction;
     };
     [[nodiscard]] Snapshot snapshot() const {
-        return {position_, velocity_, pressure_, id_, ends_.state()};
+        return {position_,    velocity_, pressure_, id_, ends_.state(), acceleration_of_last_,
+                volume_flux_, eps_};
     }
     void restore(const Snapshot& snapshot);
 
@@ -154,12 +182,18 @@ private:
     }
     template <class Value>
     [[nodiscard]] Real mean_in_bore(const Value& value) const;
-    [[nodiscard]] AxialBins axial_velocity() const;
+    template <class Flux>
+    [[nodiscard]] AxialBins flux_of_sections(const Flux& flux) const;
+    /// Length of pipe over which the flux is held: solids part it along the pipe [m].
+    [[nodiscard]] Real section_length() const noexcept {
+        return 2 * (loaded() ? numerics_.particle_spacing : pipe_radius_);
+    }
+    [[nodiscard]] Real flux_before(std::size_t i) const noexcept;
     template <class Holds>
     [[nodiscard]] std::size_t count_liquid(const Holds& holds) const;
     [[nodiscard]] Real fastest() const; // [m/s]
     [[nodiscard]] Real stable_step() const;
-    [[nodiscard]] bool step(Real dt, AdvanceReport& report);
+    [[nodiscard]] bool step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed);
     void sort();
     [[nodiscard]] neighbors::Groups groups() const;
     void find_pairs();
@@ -177,6 +211,14 @@ private:
     void hold_bulk_velocity(Real dt);
     void hold_flux_of_plate(Real dt, const AxialBins& before);
     void move(Real dt, AdvanceReport& report);
+    [[nodiscard]] bool loaded() const noexcept { return !load_.void_fraction.empty(); }
+    [[nodiscard]] Real liquid_share(std::size_t i) const noexcept;
+    [[nodiscard]] Real mean_momentum() const;
+    [[nodiscard]] Real add_relative_convection(Real dt);
+    void take_load(Real dt, Real brought);
+    void hold_sections(Real dt, const AxialBins& before);
+    [[nodiscard]] Real pressure_of_load() const;
+    void leave_load(Real dt, Loading& loading);
     void move_plate(Real dt, AdvanceReport& report);
     void keep(const std::vector<std::uint8_t>& kept);
     void enter(std::span<const Entrant> entrants);
@@ -213,6 +255,16 @@ private:
     std::vector<Real> scalar_, eddy_viscosity_, right_hand_side_, pressure_before_, known_;
     std::vector<std::uint8_t> deficient_;
     std::vector<Index> order_, id_memory_;
+
+    // Of the liquid with solids in it; empty while there were none.
+    Load load_;                              // of the substep under way
+    std::vector<Real> volume_;               // [m3] of the bore, of each particle
+    std::vector<Real> eps_;                  // [-] void fraction of the last substep
+    std::vector<Real> damping_;              // [-] a, of liquid and walls
+    std::vector<Vec3> volume_flux_;          // [m/s] w of the last substep
+    std::vector<Vec3> acceleration_of_last_; // [m/s2] of the liquid, drag apart
+    Real fastest_ = 0;                       // [m/s] of the liquid, at the substep's start
+    Real convection_error_ = 0;              // [Pa/m]
 
     Real gradient_ = 0, friction_ = 0, unexplained_ = 0, wall_shear_ = 0, pressure_noise_ = 0;
 };

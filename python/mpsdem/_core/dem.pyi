@@ -178,11 +178,18 @@ class Solids:
         """
         Continue bit-equal from a `state` of the same population.
         """
-    def set_forcing(self, *, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, drag_rate: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None) -> None:
+    def set_forcing(self, *, acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, drag_rate: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, liquid_acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, relaxation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, added_mass: typing.SupportsFloat | typing.SupportsIndex | typing.Annotated[numpy.typing.ArrayLike, numpy.float64] = 0.0) -> None:
         """
-        From now on dv/dt = F/m + acceleration + drag_rate (liquid_velocity - v).
+        From now on dv/dt = F/m + acceleration + drag_rate (u - v), u = liquid_velocity.
         
-        Drag is implicit in v. Starts the sums of `drag_impulse` anew.
+        With the last two the liquid responds: du/dt = liquid_acceleration - relaxation (u - v), from
+        `liquid_velocity` on. Both are implicit in the slip u - v, together: stable for any step. The
+        liquid's inertia of each solid, drag_rate * mass / relaxation [kg], times u and the solid's mass
+        times v then keep their sum in the exchange.
+        
+        Added mass adds added_mass (du/dt - dv/dt) to the solid's acceleration, implicitly: stable for any
+        ratio of densities. A liquid that responds gets the opposite with the inertia above; one that does
+        not has du/dt = 0. Contacts see the solid's own mass. Starts `drag_impulse` and `mean_velocity` anew.
         
         Parameters
         ----------
@@ -191,7 +198,19 @@ class Solids:
         liquid_velocity : (n, 3) float64 ndarray, optional
             [m/s]; together with `drag_rate`.
         drag_rate : (n,) float64 ndarray, optional
-            [1/s].
+            [1/s], >= 0.
+        liquid_acceleration : (n, 3) float64 ndarray, optional
+            What else moves the liquid at each solid [m/s2]; together with `relaxation`.
+        relaxation : (n,) float64 ndarray, optional
+            Rate at which the liquid at each solid nears the solid's velocity [1/s], >= 0.
+        added_mass : float or (n,) float64 ndarray
+            Over the solid's own mass [-], >= 0: C_m rho_liquid / rho_solid, C_m = 1/2 for a sphere. Force:
+            Auton, Hunt & Prud'homme (1988) doi:10.1017/S0022112088003246. Other than 0 only with `drag_rate`.
+        
+        Raises
+        ------
+        ValueError
+            A shape, a negative number, or one of those that come together is missing.
         """
     def state(self) -> dict[str, typing.Any]:
         """
@@ -200,7 +219,7 @@ class Solids:
     @property
     def drag_impulse(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) impulse of drag on each solid since set_forcing [N s].
+        (n, 3) impulse of drag and added mass on each solid since set_forcing [N s].
         """
     @property
     def elastic_energy(self) -> float:
@@ -218,9 +237,19 @@ class Solids:
         (n,) times around the periodic axis.
         """
     @property
+    def liquid_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) of the liquid at each solid now [m/s]; in a liquid only.
+        """
+    @property
     def mass(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) [kg].
+        """
+    @property
+    def mean_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) mean over the time since set_forcing, as drag saw it [m/s]; in a liquid only.
         """
     @property
     def position(self) -> numpy.typing.NDArray[numpy.float64]:

@@ -238,6 +238,11 @@ class LiquidReport:
         Pressures cut to the limit.
         """
     @property
+    def convection_error(self) -> float:
+        """
+        Axial momentum that particles failed to carry along between solids, and were given back, mean over the call [Pa/m].
+        """
+    @property
     def crowded(self) -> int:
         """
         Particles left out there, nearer than half a spacing to others.
@@ -368,6 +373,9 @@ class LagrangianLiquid:
         Given loss of pressure along the pipe [Pa/m].
     courant, tolerance, background, shift, pressure_limit : float
         Numbers of the method [-].
+    speed : float
+        Of the stirring by solids, where the liquid itself hardly flows: scales the pressure limits as
+        the bulk velocity does [m/s].
     solver : {"two_level", "jacobi", "cholmod"}
         Of the pressure equation: conjugate gradients, or a factor each step where the build has it.
     pairing : {"conserving", "difference"}
@@ -380,7 +388,7 @@ class LagrangianLiquid:
     ----------
     Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
     """
-    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, plate: PushPlate | None = None, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', pairing: str = 'conserving', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.25, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], particle_spacing: typing.SupportsFloat | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, pipe_length: typing.SupportsFloat | typing.SupportsIndex, plate: PushPlate | None = None, density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex, roughness: typing.SupportsFloat | typing.SupportsIndex, turbulence: None | MixingLength | Smagorinsky, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None, courant: typing.SupportsFloat | typing.SupportsIndex = 0.8, tolerance: typing.SupportsFloat | typing.SupportsIndex = 0.001, solver: str = 'two_level', pairing: str = 'conserving', background: typing.SupportsFloat | typing.SupportsIndex = 0.02, shift: typing.SupportsFloat | typing.SupportsIndex = 0.25, pressure_limit: typing.SupportsFloat | typing.SupportsIndex = 0.25, speed: typing.SupportsFloat | typing.SupportsIndex = 0.0, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         ...
     def __len__(self) -> int:
         ...
@@ -426,7 +434,7 @@ class LagrangianLiquid:
     @property
     def bulk_velocity(self) -> float:
         """
-        Mean of the liquid [m/s].
+        Flow rate of liquid and solids over the bore [m/s].
         """
     @property
     def count_in_bore(self) -> int:
@@ -480,6 +488,11 @@ class LagrangianLiquid:
     def velocity(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 3) [m/s].
+        """
+    @property
+    def void_fraction(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) share of the liquid, of the last substep [-].
         """
     @property
     def wall_shear(self) -> float:

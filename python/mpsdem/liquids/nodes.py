@@ -60,8 +60,10 @@ class NodeLiquid:
         return self.nodes
 
     def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
-        load = {} if exchange is None else {"exchange": exchange}
-        report = self.nodes.advance(dt, **load)
+        if exchange is None:
+            report = self.nodes.advance(dt)
+        else:
+            report = exchange.advance(self.nodes, dt)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt

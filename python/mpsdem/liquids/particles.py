@@ -94,8 +94,10 @@ class ParticleLiquid:
         return self.particles
 
     def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
-        load = {} if exchange is None else {"exchange": exchange}
-        report = self.particles.advance(dt, **load)
+        if exchange is None:
+            report = self.particles.advance(dt)
+        else:
+            report = exchange.advance(self.particles, dt)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt

@@ -65,11 +65,10 @@ def build_state(case: Case, plan: Plan) -> State:
         threads=plan.threads,
     )
     exchange = None
-    if plan.two_way:
+    if plan.two_way and case.liquid is not None:
         exchange = coupling.Exchange(
             smoothing_radius=plan.smoothing_radius,
-            pipe_radius=case.pipe.radius,
-            threads=plan.threads,
+            liquid_density=case.liquid.density,
         )
     return State(
         population=population,

@@ -194,7 +194,7 @@ class AdvanceSolids:
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
                 liquid_acceleration=state.liquid_acceleration,
-                relaxation=state.exchange.relaxation(drag_rate=state.drag_rate, mass=solids.mass),
+                relaxation=state.exchange.relaxation(solids.mass * state.drag_rate),
             )
 
 
@@ -217,7 +217,7 @@ class ExchangeMomentum:
     turns: int
     held: bool
 
-    def __call__(self, state: State, _dt: float) -> None:
+    def __call__(self, state: State, dt: float) -> None:
         solids, (_, exchange) = state.solids, state.partners
         state.mean_drag = state.mean_drag + solids.mass * state.drag_rate / self.turns
         if not self.held:
@@ -229,6 +229,6 @@ class ExchangeMomentum:
             position=state.begun_at,
             mean_velocity=state.mean_velocity,
             drag=state.mean_drag,
-            impulse=state.impulse,
-            held=self.held,
+            impulse=None if self.held else state.impulse,
+            duration=self.turns * dt,
         )

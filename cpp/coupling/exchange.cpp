@@ -1,0 +1,129 @@
+#include "coupling/exchange.hpp"
+
+#include "core/check.hpp"
+
+#include <algorithm>
+
+namespace mpsdem::coupling {
+
+Exchange::Exchange(Real smoothing_radius, Real liquid_density)
+    : footprints_(SmoothingKernel{smoothing_radius}), density_(liquid_density) {
+    require(liquid_density > 0, "Exchange: liquid_density must be > 0 kg/m3");
+}
+
+void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velocity,
+                     std::span<const Vec3> acceleration, std::span<const Vec3> position,
+                     std::span<const Real> radius) {
+    require(velocity.size() == points.position.size() &&
+                (acceleration.empty() || acceleration.size() == velocity.size()),
+            "Exchange: the liquid needs a velocity for each of its points");
+    require(radius.size() == position.size(), "Exchange: radius must have one row per solid");
+    volume_.resize(position.size());
+    for (std::size_t p = 0; p < position.size(); ++p)
+        volume_[p] = 4. / 3 * std::numbers::pi * radius[p] * radius[p] * radius[p];
+    footprints_.find(points, position);
+    find_void_fraction(points);
+    velocity_.resize(position.size());
+    acceleration_.assign(position.size(), {});
+    for (std::size_t p = 0; p < position.size(); ++p) {
+        velocity_[p] = footprints_.sample(p, velocity);
+        if (!acceleration.empty()) acceleration_[p] = footprints_.sample(p, acceleration);
+    }
+}
+
+void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
+    const std::size_t n = points.position.size();
+    void_fraction_.assign(n, 0);
+    for (std::size_t p = 0; p < volume_.size(); ++p)
+        footprints_.spread(p, volume_[p], void_fraction_);
+    clipped_ = 0;
+    Real bore = 0, liquid = 0, solids = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        Real& eps = void_fraction_[i];
+        eps = 1 - eps;
+        if (eps < floor) {
+            eps = floor;
+            ++clipped_;
+        }
+        bore += points.volume[i];
+        liquid += points.volume[i] * eps;
+    }
+    for (const Real volume : volume_) solids += volume;
+    volume_error_ = liquid / (bore - solids) - 1;
+}
+
+std::vector<Real> Exchange::relaxation(std::span<const Real> drag) const {
+    require(drag.size() == volume_.size(), "Exchange: drag must have one row per solid");
+    std::vector<Real> rate(void_fraction_.size(), 0), result(drag.size());
+    for (std::size_t p = 0; p < drag.size(); ++p) footprints_.spread(p, drag[p], rate);
+    for (std::size_t i = 0; i < rate.size(); ++i) rate[i] /= density_ * void_fraction_[i];
+    for (std::size_t p = 0; p < drag.size(); ++p) result[p] = footprints_.sample<Real>(p, rate);
+    return result;
+}
+
+void Exchange::give(const SolidsStep& step) {
+    const std::size_t n = volume_.size();
+    require(step.position.size() == n && step.mean_velocity.size() == n && step.drag.size() == n &&
+                (step.impulse.empty() || step.impulse.size() == n),
+            "Exchange: position, mean_velocity, drag and impulse must have one row per solid");
+    require(step.duration > 0, "Exchange: duration must be > 0 s");
+    start_.assign(step.position.begin(), step.position.end());
+    mean_velocity_.assign(step.mean_velocity.begin(), step.mean_velocity.end());
+    drag_.assign(step.drag.begin(), step.drag.end());
+    impulse_.assign(step.impulse.begin(), step.impulse.end());
+    free_ = !step.impulse.empty();
+    duration_ = step.duration;
+    received_.assign(n, {});
+    on_liquid_ = on_solids_ = {};
+    sizes_ = 0;
+}
+
+mps::Load Exchange::before(const mps::LiquidPoints& points, Real elapsed, Real dt) {
+    points_ = points;
+    step_ = dt;
+    position_.resize(start_.size());
+    for (std::size_t p = 0; p < start_.size(); ++p) {
+        Vec3 x = start_[p] + elapsed * mean_velocity_[p];
+        if (points.period > 0) {
+            x.x -= std::floor(x.x / points.period) * points.period;
+            if (x.x >= points.period) x.x = 0; // rounded up from just below zero
+        }
+        position_[p] = x;
+    }
+    footprints_.find(points, position_);
+    find_void_fraction(points);
+    const std::size_t n = points.position.size();
+    flux_.assign(n, {});
+    beta_.assign(n, 0);
+    drag_of_solids_.assign(n, {});
+    for (std::size_t p = 0; p < start_.size(); ++p) {
+        footprints_.spread(p, volume_[p] * mean_velocity_[p], flux_);
+        footprints_.spread(p, drag_[p], beta_);
+        footprints_.spread(p, drag_[p] * mean_velocity_[p], drag_of_solids_);
+    }
+    return {void_fraction_, flux_, beta_, drag_of_solids_};
+}
+
+std::span<const Vec3> Exchange::owed(std::span<const Vec3> velocity) {
+    owed_.assign(velocity.size(), {});
+    for (std::size_t p = 0; p < start_.size(); ++p) {
+        const Vec3 by_drag =
+            (drag_[p] * step_) * (footprints_.sample(p, velocity) - mean_velocity_[p]);
+        const Vec3 got = free_ ? (step_ / duration_) * impulse_[p] : by_drag;
+        if (free_) footprints_.spread(p, by_drag - got, owed_);
+        received_[p] += got;
+        on_solids_ += got;
+        sizes_ += norm(got);
+    }
+    for (std::size_t i = 0; i < velocity.size(); ++i) {
+        on_liquid_ +=
+            points_.volume[i] * (step_ * (drag_of_solids_[i] - beta_[i] * velocity[i]) + owed_[i]);
+    }
+    return owed_;
+}
+
+Real Exchange::mismatch() const noexcept {
+    return sizes_ > 0 ? norm(on_liquid_ + on_solids_) / sizes_ : 0;
+}
+
+} // namespace mpsdem::coupling

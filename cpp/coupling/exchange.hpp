@@ -1,0 +1,93 @@
+#pragma once
+
+#include "coupling/footprints.hpp"
+
+#include <span>
+#include <vector>
+
+namespace mpsdem::coupling {
+
+/// What solids did over a step of the liquid, one entry per solid.
+struct SolidsStep {
+    std::span<const Vec3> position;      // [m] at its start
+    std::span<const Vec3> mean_velocity; // [m/s]
+    std::span<const Real> drag;          // [kg/s] K, drag over slip, mean
+    std::span<const Vec3> impulse;       // [N s] that the liquid gave them; empty: whatever J is
+    Real duration;                       // [s]
+};
+
+/// Two-way exchange between solids and a liquid, in Model B: the solids feel drag and the buoyancy
+/// of liquid at rest, and all else is the liquid's pressure.
+///
+///   eps_i = 1 - sum_p V_p w_ip / V_i                 void fraction, at least 0.3 (counted)
+///   s_i   = sum_p V_p v_p w_ip / V_i                 flux of the solids
+///   beta_i, D_i = sum_p (K_p, K_p v_p) w_ip / V_i    drag, implicit in the liquid's step
+///   J_p   = K_p dt sum_i w_ip (u_i - v_p)            impulse by it
+///
+/// The solids have meanwhile got I_p, from substeps in which the liquid relaxes with
+///
+///   L_p = sum_i w_ip beta_i / (rho eps_i)
+///
+/// The difference is spread with the same weights after the liquid's step, so that the exchange is
+/// equal and opposite to round-off, and small where the substeps foresaw the liquid well.
+///
+/// Source: Zhou, Kuang, Chu & Yu (2010), doi:10.1017/S002211201000306X, set II (Model B).
+class Exchange final : public mps::Loading {
+public:
+    static constexpr Real floor = 0.3; // [-] of eps; a clip, counted
+
+    Exchange(Real smoothing_radius, Real liquid_density);
+
+    /// Look at the liquid around the solids at the start of a step.
+    void begin(const mps::LiquidPoints& points, std::span<const Vec3> velocity,
+               std::span<const Vec3> acceleration, std::span<const Vec3> position,
+               std::span<const Real> radius);
+    [[nodiscard]] std::span<const Vec3> liquid_velocity() const noexcept { return velocity_; }
+    [[nodiscard]] std::span<const Vec3> liquid_acceleration() const noexcept {
+        return acceleration_;
+    }
+    /// L_p [1/s], for K [kg/s] of the solids as they lie at the start of the step.
+    [[nodiscard]] std::vector<Real> relaxation(std::span<const Real> drag) const;
+
+    /// Take what the solids did; the next advance of the liquid hears of it.
+    void give(const SolidsStep& step);
+
+    [[nodiscard]] mps::Load before(const mps::LiquidPoints& points, Real elapsed, Real dt) override;
+    [[nodiscard]] std::span<const Vec3> owed(std::span<const Vec3> velocity) override;
+
+    /// Impulse on each solid in the last step of the liquid [N s].
+    [[nodiscard]] std::span<const Vec3> impulse() const noexcept { return received_; }
+    /// Void fractions of liquid points raised to the floor in that step.
+    [[nodiscard]] std::size_t clipped() const noexcept { return clipped_; }
+    /// Impulse on the liquid and on the solids together, over the sum of the sizes of those on the
+    /// solids [-].
+    [[nodiscard]] Real mismatch() const noexcept;
+    /// Volume of the liquid by its void fractions, over bore less solids, less 1 [-].
+    [[nodiscard]] Real liquid_volume_error() const noexcept { return volume_error_; }
+
+private:
+    void find_void_fraction(const mps::LiquidPoints& points);
+
+    Footprints footprints_;
+    Real density_; // [kg/m3] of the liquid
+
+    // Of the solids.
+    std::vector<Vec3> velocity_, acceleration_; // of the liquid at them, at the start
+    std::vector<Real> volume_;                  // [m3]
+    std::vector<Vec3> start_, position_, mean_velocity_, impulse_, received_;
+    std::vector<Real> drag_;
+    Real duration_ = 0;
+    bool free_ = true; // whether the solids say what impulse they got
+
+    // Of the liquid's points.
+    mps::LiquidPoints points_{};
+    std::vector<Real> void_fraction_, beta_;
+    std::vector<Vec3> flux_, drag_of_solids_, owed_;
+    Real step_ = 0; // [s] of the substep under way
+    std::size_t clipped_ = 0;
+    Real volume_error_ = 0;
+    Vec3 on_liquid_, on_solids_; // [N s]
+    Real sizes_ = 0;             // [N s]
+};
+
+} // namespace mpsdem::coupling
