@@ -60,10 +60,7 @@ class NodeLiquid:
         return self.nodes
 
     def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
-        if exchange is None:
-            report = self.nodes.advance(dt)
-        else:
-            report = exchange.advance(self.nodes, dt)
+        report = self.nodes.advance(dt) if exchange is None else exchange.advance(self.nodes, dt)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt
