@@ -143,6 +143,34 @@ friction : float
     m.def("damping_factor", &dem::damping_factor, "restitution"_a, "p"_a, "q"_a,
           "Factor a of x'' + a x^q x' + x^p = 0 that returns `restitution` without pulling.");
 
+    py::class_<dem::Lubrication>(
+        m, "Lubrication",
+        R"(Viscous force in narrow gaps between solids and at walls, along the normal.
+
+F = -6 pi viscosity R^2 u_n (1 / max(h, h_min) - 1 / h_c) for gaps 0 < h < h_c; R is the reduced
+radius. Source: Biegert, Vowinckel & Meiburg (2017) doi:10.1016/j.jcp.2017.03.035.
+
+Parameters
+----------
+viscosity : float
+    Of the liquid, dynamic [Pa s], > 0.
+least_gap : float
+    h_min / R [-], > 0: the roughness of the surfaces.
+cutoff : float
+    h_c / R [-], > least_gap and <= 2.
+
+Raises
+------
+ValueError
+    A number out of its range.
+)")
+        .def(py::init<Real, Real, Real>(), py::kw_only(), "viscosity"_a, "least_gap"_a = 3e-3,
+             "cutoff"_a = 1.)
+        .def("force", &dem::Lubrication::force<Real>, py::kw_only(), "gap"_a, "normal_velocity"_a,
+             "reduced_radius"_a,
+             "On the first body, positive apart [N]. `gap` and `reduced_radius` in m; "
+             "`normal_velocity` [m/s], positive while the bodies part.");
+
     py::class_<dem::AdvanceReport>(m, "AdvanceReport", "What a call of Solids.advance met.")
         .def_readonly("largest_overlap", &dem::AdvanceReport::largest_overlap,
                       "Largest overlap over the smaller radius [-].")
@@ -168,13 +196,16 @@ period : float
     Length of the periodic x axis [m]; 0 for none.
 threads : int
     The results do not depend on it.
+lubrication : Lubrication, optional
+    None: gaps hold nothing. Its force bounds the step of `advance`.
 )")
         .def(py::init([](const Array<Real>& position, const Array<Real>& velocity,
                          const Array<Real>& spin, const Array<Real>& radius,
                          const Array<Real>& density, const LawArgument& pair_law,
                          const LawArgument& wall_law, Real pair_rolling_friction,
                          Real wall_rolling_friction, const std::vector<WallArgument>& walls,
-                         Real period, int threads) {
+                         Real period, int threads,
+                         const std::optional<dem::Lubrication>& lubrication) {
                  std::vector<geometry::Wall> surfaces;
                  for (const WallArgument& wall : walls)
                      surfaces.push_back(value_of<geometry::Wall>(wall, "wall"));
@@ -182,12 +213,12 @@ threads : int
                      vectors(position, "position"), vectors(velocity, "velocity"),
                      vectors(spin, "spin"), values(radius, "radius"), values(density, "density"),
                      model(pair_law, pair_rolling_friction), model(wall_law, wall_rolling_friction),
-                     std::move(surfaces), period, threads);
+                     std::move(surfaces), period, threads, lubrication);
              }),
              py::kw_only(), "position"_a, "velocity"_a, "spin"_a, "radius"_a, "density"_a,
              "pair_law"_a, "wall_law"_a, "pair_rolling_friction"_a = 0.,
              "wall_rolling_friction"_a = 0., "walls"_a = std::vector<WallArgument>{},
-             "period"_a = 0., "threads"_a = 1)
+             "period"_a = 0., "threads"_a = 1, "lubrication"_a = py::none())
         .def("__len__", &dem::Solids::size)
         .def(
             "set_forcing",
@@ -242,7 +273,8 @@ ValueError
 )")
         .def("advance", &dem::Solids::advance, "dt"_a, "steps"_a,
              py::call_guard<py::gil_scoped_release>(),
-             "Take `steps` steps of velocity Verlet of `dt` [s].")
+             "Take `steps` steps of velocity Verlet of `dt` [s]. ValueError: dt is not > 0, or too "
+             "long for lubrication.")
         .def_property_readonly(
             "position", [](const dem::Solids& s) { return array(s.position()); },
             "(n, 3) [m], x within the period.")
@@ -268,7 +300,9 @@ ValueError
             "(n, 3) of the liquid at each solid now [m/s]; in a liquid only.")
         .def_property_readonly(
             "wall_impulse", [](const dem::Solids& s) { return array(s.wall_impulse()); },
-            "(3,) impulse of the walls on the solids since the start [N s].")
+            "(3,) impulse of the walls on the solids, lubrication included, since the start [N s].")
+        .def_property_readonly("longest_step", &dem::Solids::longest_step,
+                               "That lubrication allows [s]; infinite without.")
         .def_property_readonly("kinetic_energy", &dem::Solids::kinetic_energy, "[J]")
         .def_property_readonly("elastic_energy", &dem::Solids::elastic_energy, "[J]")
         .def(

@@ -6,6 +6,7 @@
 #include "mps/laplacian.hpp"
 #include "mps/least_squares_laplacian.hpp"
 #include "mps/number_density.hpp"
+#include "mps/relative_convection.hpp"
 #include "mps/shear_rate.hpp"
 #include "mps/shifting.hpp"
 #include "mps/turbulence.hpp"
@@ -224,6 +225,22 @@ Array<Real> shear_rate(const NeighborList& neighbors, const ReferenceDensity& re
     });
 }
 
+Array<Real> relative_convection(const NeighborList& neighbors, const ReferenceDensity& reference,
+                                const Array<Real>& relative_flux, const Array<Real>& void_fraction,
+                                const Array<Real>& velocity, const Array<std::int8_t>& kind,
+                                int threads) {
+    require_reach(neighbors, reference.weight);
+    const auto flux = vectors_of(neighbors, relative_flux, "relative_flux");
+    const auto u = vectors_of(neighbors, velocity, "velocity");
+    const auto eps = values(void_fraction, "void_fraction");
+    require_rows(eps.size(), neighbors, "void_fraction");
+    const auto kinds = kinds_of(neighbors, kind);
+    return filled<Vec3>(u.size(), [&](auto result) {
+        mps::relative_convection(reference, EvaluatedPairs(neighbors, reference.weight, kinds),
+                                 flux, eps, u, threads, result);
+    });
+}
+
 Array<Real> shifting(const NeighborList& neighbors, const ReferenceDensity& reference,
                      Real coefficient, int threads) {
     require_reach(neighbors, reference.weight);
@@ -315,6 +332,30 @@ Returns
 References
 ----------
 Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+)");
+    m.def("relative_convection", &relative_convection, "neighbors"_a, "reference"_a, py::kw_only(),
+          "relative_flux"_a, "void_fraction"_a, "velocity"_a, "kind"_a, "threads"_a = 1,
+          R"(What a liquid brings along that moves past its own particles, upwind.
+
+Parameters
+----------
+neighbors : NeighborList
+reference : ReferenceDensity
+relative_flux : (n, 3) float64 ndarray
+    q = eps (u - w), w the particles' own velocity [m/s].
+void_fraction : (n,) float64 ndarray
+    eps, share of the liquid [-].
+velocity : (n, 3) float64 ndarray
+    u of the liquid [m/s].
+kind : (n,) int8 ndarray
+    2 liquid, -2 wall, -1 ghost; only liquid brings something.
+threads : int
+    The result does not depend on it.
+
+Returns
+-------
+(n, 3) float64 ndarray
+    -(q . grad) u / eps [m/s2]; 0 where q is.
 )");
     m.def("shifting", &shifting, "neighbors"_a, "reference"_a, py::kw_only(), "coefficient"_a,
           "threads"_a = 1,

@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "dem/integrator.hpp"
+#include "dem/lubrication_forces.hpp"
 #include "dem/pair_contact.hpp"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <string>
 #include <utility>
 
 namespace mpsdem::dem {
@@ -24,6 +26,10 @@ constexpr Real inner_steps = 8;            // [-] steps that an inner list shoul
 constexpr Real least_inner_skin = 0.005;   // [-] over the mean radius
 constexpr Real outer_steps = 400;          // [-] steps that an outer list should last
 constexpr Real least_outer_skin = 0.25, most_outer_skin = 0.8; // [-] over the mean radius
+
+// Damping at the last half step's velocity: 2 is the limit of a lone pair; a solid squeezed by
+// twelve equal ones that move against it is slowed four times as fast.
+constexpr Real most_lubrication = 0.5; // [-] step times rate
 
 constexpr Real most_laps = 1 << 30; // [-] beyond it a solid is lost: laps are whole numbers
 
@@ -56,9 +62,9 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
                std::span<const Vec3> spin, std::span<const Real> radius,
                std::span<const Real> density, const ContactModel& between_solids,
                const ContactModel& at_walls, std::vector<geometry::Wall> walls, Real period,
-               int threads)
+               int threads, const std::optional<Lubrication>& lubrication)
     : solids_(position.size()), walls_(std::move(walls)), pair_model_(between_solids),
-      wall_model_(at_walls), period_(period), threads_(threads) {
+      wall_model_(at_walls), lubrication_(lubrication), period_(period), threads_(threads) {
     const std::size_t n = position.size();
     require(n > 0, "Solids: at least one solid is needed");
     require(velocity.size() == n && spin.size() == n && radius.size() == n && density.size() == n,
@@ -89,6 +95,7 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
         const Real curvature = std::visit([](const auto& w) { return w.curvature(); }, wall);
         require(-2 * curvature * max_radius_ < 1, "Solids: radius must be less than the bore's");
     }
+    if (lubrication_) measure(*lubrication_);
 
     const std::size_t size = n <= single_block ? n : block_size;
     for (std::size_t begin = 0; begin < n; begin += size) {
@@ -102,6 +109,25 @@ Solids::Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
     [[maybe_unused]] const bool sorted = sort();
     // forces of the first half kick; no displacement is added
     contact_forces(0);
+}
+
+/// How far and how fast lubrication acts at most. For a pair, reduced radius over reduced mass is a
+/// mean of the two solids' radius over mass.
+void Solids::measure(const Lubrication& lubrication) {
+    pair_reach_ = lubrication.reach(max_radius_ / 2);
+    Real most = 0; // [m/kg]
+    for (std::size_t i = 0; i < size(); ++i) {
+        const Real radius = *solids_.at(P::RADIUS, i);
+        const Real inverse_mass = *solids_.at(P::INVERSE_MASS, i);
+        most = std::max(most, radius * inverse_mass);
+        for (const geometry::Wall& wall : walls_) {
+            const Real curvature = std::visit([](const auto& w) { return w.curvature(); }, wall);
+            const Real reduced_radius = radius / (1 + curvature * radius);
+            wall_reach_ = std::max(wall_reach_, lubrication.reach(reduced_radius));
+            most = std::max(most, reduced_radius * inverse_mass);
+        }
+    }
+    lubrication_rate_ = lubrication.rate(most);
 }
 
 void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec3> liquid_velocity,
@@ -144,8 +170,16 @@ void Solids::set_forcing(std::span<const Vec3> acceleration, std::span<const Vec
     }
 }
 
+Real Solids::longest_step() const noexcept {
+    return most_lubrication / lubrication_rate_;
+}
+
 AdvanceReport Solids::advance(Real dt, std::size_t steps) {
     require(dt > 0, "advance: dt must be > 0 s");
+    require(!lubrication_ || dt <= longest_step(),
+            "advance: dt must be <= " + std::to_string(1e6 * longest_step()) +
+                "e-6 s, half the time in which lubrication slows a solid at its least_gap; take "
+                "shorter steps or a wider least_gap");
     AdvanceReport report;
     for (Block& block : blocks_) block.largest_overlap = 0;
     for (std::size_t step = 0; step < steps; ++step) {
@@ -215,6 +249,16 @@ void Solids::wall_forces(Block& block, Real dt) {
     }
 }
 
+void Solids::lubricate(const Lubrication& lubrication, Block& block) {
+    lubricate_pairs(lubrication, pair_reach_, solids_, block);
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+        std::visit(
+            [&](const auto& wall) {
+                lubricate_wall(lubrication, wall_reach_, wall, solids_, block, block.near_wall[w]);
+            },
+            walls_[w]);
+}
+
 void Solids::contact_forces(Real dt) {
     parallel_for_blocks(blocks_.size(), threads_, [&](std::size_t b) {
         wall_forces(blocks_[b], dt);
@@ -227,6 +271,7 @@ void Solids::contact_forces(Real dt) {
                 run(law, pair_model_.rolling, solids_, blocks_[b], dt);
             },
             pair_model_.law);
+        if (lubrication_) lubricate(*lubrication_, blocks_[b]);
     });
     if (blocks_.size() > 1) {
         parallel_for_blocks(blocks_.size(), threads_,
@@ -296,7 +341,7 @@ bool Solids::sort() {
         }
     }
 
-    const Real reach = 2 * max_radius_ + outer_skin_;
+    const Real reach = 2 * max_radius_ + (outer_skin_ + pair_reach_);
     grid_ = neighbors::CellGrid(reach, period_);
     std::vector<Index> order;
     std::vector<Vec3> position(n);
@@ -349,7 +394,7 @@ bool Solids::sort() {
         for (std::size_t i = block.begin; i < block.end; ++i) {
             grid_.around(grid_.cell(i), [&](Index begin, Index end, int image) {
                 const Vec3 x_i = position[order[i]] + Vec3{image * period_, 0, 0};
-                const Real reach_i = *solids_.at(P::RADIUS, i) + outer_skin_;
+                const Real reach_i = *solids_.at(P::RADIUS, i) + (outer_skin_ + pair_reach_);
                 for (std::size_t j = std::max<std::size_t>(begin, i + 1); j < end; ++j) {
                     const Vec3 d = x_i - position[order[j]];
                     const Real range = reach_i + *solids_.at(P::RADIUS, j);
@@ -383,7 +428,7 @@ void Solids::build_inner(Block& block) {
     inner.clear();
     std::size_t old = 0; // both lists ascend in the outer pair
     const auto take = [&](std::size_t begin, std::size_t end) {
-        outer.find_near(solids_, period_, inner_skin_, begin, end, block.near);
+        outer.find_near(solids_, period_, inner_skin_ + pair_reach_, begin, end, block.near);
         inner.reserve(inner.size + block.near.size() + lane_count);
         for (const Index pair : block.near) {
             while (old < before.size && before.outer[old] < pair) ++old;
@@ -421,7 +466,7 @@ void Solids::find_near_wall(Block& block, std::size_t w) {
         [&](const auto& wall) {
             const auto is_near = [&](std::size_t i) {
                 return wall.touches(solids_.vector(P::X, i),
-                                    *solids_.at(P::RADIUS, i) + wall_skin_);
+                                    *solids_.at(P::RADIUS, i) + (wall_skin_ + wall_reach_));
             };
             std::vector<Index>& near = block.near_wall[w];
             near.clear();
@@ -674,7 +719,7 @@ void Solids::exchange(Archive& archive) {
     };
     for (const std::size_t count : {size(), blocks_.size(), walls_.size(), lane_count})
         archive.same(static_cast<std::int64_t>(count));
-    archive.same(period_);
+    for (const Real length : {period_, pair_reach_, wall_reach_}) archive.same(length);
     solids_.for_each_array(vector);
     for (Index& id : solids_.id()) archive(id);
     for (std::int32_t& laps : solids_.laps()) archive(laps);

@@ -3,12 +3,14 @@
 #include "dem/hertz_mindlin.hpp"
 #include "dem/hertz_viscoelastic.hpp"
 #include "dem/linear_spring.hpp"
+#include "dem/lubrication.hpp"
 #include "dem/pair_list.hpp"
 #include "dem/rolling_resistance.hpp"
 #include "dem/wall_contact.hpp"
 #include "geometry/wall.hpp"
 #include "neighbors/cell_grid.hpp"
 
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -45,13 +47,15 @@ struct ContactTable {
 /// Two lists: the outer one (cell grid, skin of a fraction of a radius) is filtered into an inner
 /// one of pairs that nearly touch. An inner list is valid while twice the summed largest speed,
 /// relative to the mean velocity at the last sort, is below its skin, and solids near a wall are
-/// listed by the like bound; these bounds are exact, nothing is missed.
+/// listed by the like bound; these bounds are exact, nothing is missed. Where gaps are lubricated,
+/// both lists reach farther by the widest such gap.
 class Solids {
 public:
     Solids(std::span<const Vec3> position, std::span<const Vec3> velocity,
            std::span<const Vec3> spin, std::span<const Real> radius, std::span<const Real> density,
            const ContactModel& between_solids, const ContactModel& at_walls,
-           std::vector<geometry::Wall> walls, Real period, int threads);
+           std::vector<geometry::Wall> walls, Real period, int threads,
+           const std::optional<Lubrication>& lubrication);
 
     /// From now on dv/dt = F/m + acceleration + drag_rate (u - v), u = liquid_velocity. With the
     /// last two spans the liquid responds: du/dt = liquid_acceleration - relaxation (u - v), from
@@ -72,6 +76,8 @@ public:
     [[nodiscard]] std::vector<Real> radius() const;   // [m]
     [[nodiscard]] std::vector<Real> mass() const;     // [kg]
     [[nodiscard]] std::vector<std::int64_t> laps() const;
+    /// Longest step that lubrication allows [s]; infinite without.
+    [[nodiscard]] Real longest_step() const noexcept;
     /// Of drag and added mass on each solid since set_forcing [N s].
     [[nodiscard]] std::vector<Vec3> drag_impulse() const;
     /// Mean of v over the kicks since set_forcing [m/s]; only in a liquid.
@@ -94,9 +100,11 @@ public:
 private:
     template <class Choose>
     [[nodiscard]] auto in_medium(const Choose& choose) const;
+    void measure(const Lubrication& lubrication);
     void kick_all(Real dt);
     void move(Real kick_time, Real dt);
     void wall_forces(Block& block, Real dt);
+    void lubricate(const Lubrication& lubrication, Block& block);
     void contact_forces(Real dt);
     void update_lists(Real dt, AdvanceReport& report);
     [[nodiscard]] bool sort();
@@ -119,7 +127,10 @@ private:
     std::vector<geometry::Wall> walls_;
     std::vector<WallHistory> at_wall_;
     ContactModel pair_model_, wall_model_;
-    Real period_; // [m], 0: none
+    std::optional<Lubrication> lubrication_;
+    Real pair_reach_ = 0, wall_reach_ = 0; // [m] widest lubricated gap, 0: none
+    Real lubrication_rate_ = 0;            // [1/s] fastest at which it slows a pair
+    Real period_;                          // [m], 0: none
     int threads_;
     Real mean_radius_, max_radius_; // [m]
     Medium medium_ = Medium::dry;

@@ -22,7 +22,7 @@ void relative_convection(const ReferenceDensity& reference, const Pairs auto& pa
     parallel_for(acceleration.size(), threads, [&](std::size_t i) {
         acceleration[i] = {};
         const Vec3& q = relative_flux[i];
-        if (dot(q, q) == 0) return;
+        if (!pairs.liquid(i) || dot(q, q) == 0) return;
         const auto own = broadcast(velocity[i]), flux = broadcast(q);
         Vector<Lanes> sum;
         pairs.template fours<Among::liquid>(i, [&](const FourPairs& p) {

@@ -66,6 +66,15 @@ OPERATORS = {
     "viscous_acceleration": lambda n, s, **k: mps.viscous_acceleration(
         n, s.reference, s.velocity, viscosity=s.viscosity, kind=s.kind, **k
     ),
+    "relative_convection": lambda n, s, **k: mps.relative_convection(
+        n,
+        s.reference,
+        relative_flux=s.viscosity[:, None] * s.velocity,
+        void_fraction=s.viscosity,
+        velocity=s.velocity,
+        kind=s.kind,
+        **k,
+    ),
     "shifting": lambda n, s, **k: mps.shifting(n, s.reference, coefficient=0.1, **k),
     "shear_rate": lambda n, s, **k: mps.shear_rate(n, s.reference, s.velocity, kind=s.kind, **k),
 }

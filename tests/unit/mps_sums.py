@@ -165,6 +165,14 @@ def by_viscous_acceleration(s, a):
     return 6 / (a.number_density * a.lambda_) * np.einsum("ij,ijk->ik", weight, du)
 
 
+def by_relative_convection(s, a):
+    q = s.viscosity[:, None] * s.velocity
+    inflow = -np.einsum("ijk,ijk->ij", (q[None, :] + q[:, None]) / 2, a.apart)
+    weight = among_liquid(s, a.factor * np.maximum(inflow, 0))
+    du = s.velocity[None, :] - s.velocity[:, None]
+    return 6 / a.number_density * np.einsum("ij,ijk->ik", weight, du) / s.viscosity[:, None]
+
+
 def by_shear_rate(s, a):
     factor = among_liquid(s, a.factor)
     result = np.zeros(len(s.position))

@@ -77,6 +77,7 @@ POWER_OF_LENGTH = {
     "laplacian": -2,
     "least_squares_laplacian": -2,
     "viscous_acceleration": -2,
+    "relative_convection": -1,
 }
 
 
@@ -541,6 +542,25 @@ def test_weights_stored_in_float32_are_the_evaluated_ones_and_the_same_in_both_r
     table = np.zeros_like(pairs.weight)
     table[rows, columns] = weight
     np.testing.assert_array_equal(table, table.T)
+
+
+def test_a_flux_past_the_particles_brings_what_lies_upstream():
+    scene = block(8)
+    gradient = np.random.default_rng(4).uniform(-1, 1, (3, 3))
+    flux, eps = np.array([0.3, -0.2, 0.5]), 0.4
+    scene = replace(scene, velocity=scene.position @ gradient.T)
+    brought = mps.relative_convection(
+        scene.neighbors,
+        scene.reference,
+        relative_flux=np.tile(flux, (len(scene.position), 1)),
+        void_fraction=np.full(len(scene.position), eps),
+        velocity=scene.velocity,
+        kind=scene.kind,
+    )
+    expected = -(gradient @ flux) / eps
+    middle = inside(scene, 0.2) & (np.abs(scene.position[:, 0] - 0.5) < 0.2)
+    assert middle.any()
+    np.testing.assert_allclose(brought[middle], np.tile(expected, (middle.sum(), 1)), atol=1e-9)
 
 
 def test_liquid_is_shifted_away_from_where_it_is_dense():

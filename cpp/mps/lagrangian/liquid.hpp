@@ -38,7 +38,8 @@ struct Numerics {
     Real shift = 0.25;      // [-] of the spacing squared, times the gradient of concentration,
                             //     for each spacing that the fastest liquid goes
     Pairing pairing = Pairing::conserving;
-    Real pressure_limit = 0.25; // [-] largest |p'| over rho U^2; beyond it, clamped and counted
+    Real pressure_limit = 0.25; // [-] largest |p'| over rho U^2; beyond it, clamped and counted;
+                                //     with solids in it, and eight times its scatter
     Real speed = 0; // [m/s] U of the background and of the limit, where solids stir a liquid that
                     //       hardly flows; at least the bulk velocity is taken
     Solver solver = Solver::two_level;
@@ -217,7 +218,6 @@ private:
     [[nodiscard]] Real add_relative_convection(Real dt);
     void take_load(Real dt, Real brought);
     void hold_sections(Real dt, const AxialBins& before);
-    [[nodiscard]] Real pressure_of_load() const;
     void leave_load(Real dt, Loading& loading);
     void move_plate(Real dt, AdvanceReport& report);
     void keep(const std::vector<std::uint8_t>& kept);

@@ -7,7 +7,7 @@ import mpsdem._core.geometry
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['AdvanceReport', 'HertzMindlin', 'HertzViscoelastic', 'LinearSpring', 'Solids', 'damping_factor']
+__all__: list[str] = ['AdvanceReport', 'HertzMindlin', 'HertzViscoelastic', 'LinearSpring', 'Lubrication', 'Solids', 'damping_factor']
 class LinearSpring:
     """
     Linear spring-dashpot with friction.
@@ -122,6 +122,33 @@ class HertzViscoelastic:
         spring : (3,) float64 ndarray
             Tangential displacement after the step [m].
         """
+class Lubrication:
+    """
+    Viscous force in narrow gaps between solids and at walls, along the normal.
+    
+    F = -6 pi viscosity R^2 u_n (1 / max(h, h_min) - 1 / h_c) for gaps 0 < h < h_c; R is the reduced
+    radius. Source: Biegert, Vowinckel & Meiburg (2017) doi:10.1016/j.jcp.2017.03.035.
+    
+    Parameters
+    ----------
+    viscosity : float
+        Of the liquid, dynamic [Pa s], > 0.
+    least_gap : float
+        h_min / R [-], > 0: the roughness of the surfaces.
+    cutoff : float
+        h_c / R [-], > least_gap and <= 2.
+    
+    Raises
+    ------
+    ValueError
+        A number out of its range.
+    """
+    def __init__(self, *, viscosity: typing.SupportsFloat | typing.SupportsIndex, least_gap: typing.SupportsFloat | typing.SupportsIndex = 0.003, cutoff: typing.SupportsFloat | typing.SupportsIndex = 1.0) -> None:
+        ...
+    def force(self, *, gap: typing.SupportsFloat | typing.SupportsIndex, normal_velocity: typing.SupportsFloat | typing.SupportsIndex, reduced_radius: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        On the first body, positive apart [N]. `gap` and `reduced_radius` in m; `normal_velocity` [m/s], positive while the bodies part.
+        """
 class AdvanceReport:
     """
     What a call of Solids.advance met.
@@ -161,14 +188,16 @@ class Solids:
         Length of the periodic x axis [m]; 0 for none.
     threads : int
         The results do not depend on it.
+    lubrication : Lubrication, optional
+        None: gaps hold nothing. Its force bounds the step of `advance`.
     """
-    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pair_law: LinearSpring | HertzMindlin | HertzViscoelastic, wall_law: LinearSpring | HertzMindlin | HertzViscoelastic, pair_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, wall_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, walls: collections.abc.Sequence[mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder] = [], period: typing.SupportsFloat | typing.SupportsIndex = 0.0, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pair_law: LinearSpring | HertzMindlin | HertzViscoelastic, wall_law: LinearSpring | HertzMindlin | HertzViscoelastic, pair_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, wall_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, walls: collections.abc.Sequence[mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder] = [], period: typing.SupportsFloat | typing.SupportsIndex = 0.0, threads: typing.SupportsInt | typing.SupportsIndex = 1, lubrication: Lubrication | None = None) -> None:
         ...
     def __len__(self) -> int:
         ...
     def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex, steps: typing.SupportsInt | typing.SupportsIndex) -> AdvanceReport:
         """
-        Take `steps` steps of velocity Verlet of `dt` [s].
+        Take `steps` steps of velocity Verlet of `dt` [s]. ValueError: dt is not > 0, or too long for lubrication.
         """
     def contacts(self) -> dict[str, typing.Any]:
         """
@@ -242,6 +271,11 @@ class Solids:
         (n, 3) of the liquid at each solid now [m/s]; in a liquid only.
         """
     @property
+    def longest_step(self) -> float:
+        """
+        That lubrication allows [s]; infinite without.
+        """
+    @property
     def mass(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) [kg].
@@ -274,7 +308,7 @@ class Solids:
     @property
     def wall_impulse(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (3,) impulse of the walls on the solids since the start [N s].
+        (3,) impulse of the walls on the solids, lubrication included, since the start [N s].
         """
 def damping_factor(restitution: typing.SupportsFloat | typing.SupportsIndex, p: typing.SupportsFloat | typing.SupportsIndex, q: typing.SupportsFloat | typing.SupportsIndex) -> float:
     """

@@ -7,7 +7,7 @@ import mpsdem._core.neighbors
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'PushPlate', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'section_operators', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
+__all__: list[str] = ['EulerianLiquid', 'LagrangianLiquid', 'LiquidReport', 'MixingLength', 'NodeLiquidReport', 'PipeProfile', 'PushPlate', 'ReferenceDensity', 'Smagorinsky', 'WallFunction', 'background_gradient', 'conserving_gradient', 'corrected_divergence', 'corrected_gradient', 'difference_gradient', 'divergence', 'eddy_viscosity', 'friction_factor', 'laplacian', 'least_squares_laplacian', 'number_density', 'relative_convection', 'section_operators', 'shear_rate', 'shifting', 'slip_divergence', 'stored_weights', 'sum_gradient', 'viscous_acceleration']
 class PipeProfile:
     """
     Developed velocity profile of a full straight pipe, prescribed.
@@ -954,6 +954,30 @@ def number_density(neighbors: mpsdem._core.neighbors.NeighborList, reference: Re
     References
     ----------
     Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205.
+    """
+def relative_convection(neighbors: mpsdem._core.neighbors.NeighborList, reference: ReferenceDensity, *, relative_flux: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kind: typing.Annotated[numpy.typing.ArrayLike, numpy.int8], threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    What a liquid brings along that moves past its own particles, upwind.
+    
+    Parameters
+    ----------
+    neighbors : NeighborList
+    reference : ReferenceDensity
+    relative_flux : (n, 3) float64 ndarray
+        q = eps (u - w), w the particles' own velocity [m/s].
+    void_fraction : (n,) float64 ndarray
+        eps, share of the liquid [-].
+    velocity : (n, 3) float64 ndarray
+        u of the liquid [m/s].
+    kind : (n,) int8 ndarray
+        2 liquid, -2 wall, -1 ghost; only liquid brings something.
+    threads : int
+        The result does not depend on it.
+    
+    Returns
+    -------
+    (n, 3) float64 ndarray
+        -(q . grad) u / eps [m/s2]; 0 where q is.
     """
 def section_operators(*, place: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], area: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall_count: typing.SupportsInt | typing.SupportsIndex, pipe_radius: typing.SupportsFloat | typing.SupportsIndex, spacing: typing.SupportsFloat | typing.SupportsIndex) -> dict[str, typing.Any]:
     """

@@ -21,7 +21,14 @@ from mpsdem.liquids.nodes import NodeLiquid
 from mpsdem.liquids.particles import ParticleLiquid
 from mpsdem.liquids.profile import ProfileLiquid
 from mpsdem.liquids.protocol import Liquid
-from mpsdem.plan import Plan, clear_gradient, outlet_length, pipe_profile, turbulence
+from mpsdem.plan import (
+    Plan,
+    clear_gradient,
+    outlet_length,
+    pipe_profile,
+    stirring_speed,
+    turbulence,
+)
 
 _SLABS = 256  # slabs that fill the gap behind a push plate, until they come again
 _SMAGORINSKY = 0.1  # [-] C_s, that of shear flows
@@ -142,6 +149,7 @@ def _of_particles(case: Case, liquid: Scene, plan: Plan) -> ParticleLiquid:
         courant=case.fidelity.courant,
         tolerance=case.fidelity.pressure_tolerance,
         solver=case.fidelity.pressure_solver,
+        speed=stirring_speed(case),
         threads=plan.threads,
     )
     vacant = len(particles) - len(layout.kind)  # places for what a plate may bring in

@@ -60,7 +60,8 @@ class NodeLiquid:
         return self.nodes
 
     def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
-        report = self.nodes.advance(dt) if exchange is None else exchange.advance(self.nodes, dt)
+        core = self.nodes
+        report = core.advance(dt) if exchange is None else exchange.advance(core, dt)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt

@@ -94,10 +94,8 @@ class ParticleLiquid:
         return self.particles
 
     def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
-        if exchange is None:
-            report = self.particles.advance(dt)
-        else:
-            report = exchange.advance(self.particles, dt)
+        core = self.particles
+        report = core.advance(dt) if exchange is None else exchange.advance(core, dt)
         tally = self.tally
         tally.time += dt
         tally.impulse += report.mean_gradient * dt

@@ -16,6 +16,7 @@ from mpsdem.plan.scales import (
     outlet_length,
     pipe_profile,
     spring_stiffness,
+    stirring_speed,
     terminal_velocity,
     turbulence,
 )
@@ -42,6 +43,7 @@ __all__ = [
     "outlet_length",
     "pipe_profile",
     "spring_stiffness",
+    "stirring_speed",
     "terminal_velocity",
     "turbulence",
 ]

@@ -20,6 +20,7 @@ from mpsdem.plan.scales import (
     require_speed,
     solids_of,
     spring_stiffness,
+    stirring_speed,
     terminal_velocity,
 )
 
@@ -161,6 +162,9 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
     if on_axis > 0:
         name = f"{courant:g} of the liquid's time to cross a spacing at {on_axis:.3g} m/s"
         yield Limit(name=name, value=courant * spacing / on_axis)
+    if (stirring := stirring_speed(case)) > 0:
+        name = f"{courant:g} of a settling solid's time to cross a spacing at {stirring:.3g} m/s"
+        yield Limit(name=name, value=courant * spacing / stirring)
     viscous = _VISCOUS_SHARE * spacing**2 / case.liquid.kinematic_viscosity
     yield Limit(name=f"{_VISCOUS_SHARE:g} of the viscous time of a spacing", value=viscous)
     if case.fidelity.liquid_step is not None:

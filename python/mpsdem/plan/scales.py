@@ -278,7 +278,7 @@ def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
             remedy="leave it out",
         )
         raise CaseError([problem])
-    if not pipe_profile(case).laminar:
+    if not pipe_profile(case).laminar or _stirred(case):
         return "mixing_length" if asked == "auto" else asked
     if asked != "auto":
         problem = Problem(
@@ -289,6 +289,23 @@ def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
         )
         raise CaseError([problem])
     return None
+
+
+def stirring_speed(case: Case) -> float:
+    """Speed at which solids stir a liquid that feels them [m/s]; 0 where none do."""
+    return terminal_velocity(case) if is_two_way(case) else 0.0
+
+
+def _stirred(case: Case) -> bool:
+    """Whether solids make a flow turbulent that would be laminar without them.
+
+    Where their speed in the bore has a Reynolds number above 2300, their wakes are turbulent at the
+    scale that is computed, and a particle liquid without eddy viscosity would keep every swirl.
+    """
+    if case.liquid is None or liquid_model(case) != "lagrangian":
+        return False
+    reynolds = stirring_speed(case) * 2 * case.pipe.radius / case.liquid.kinematic_viscosity
+    return reynolds > 2300
 
 
 def outlet_length(case: Case) -> float:
