@@ -183,16 +183,40 @@ def test_light_solids_carry_liquid_along_and_heavy_ones_do_not():
     assert reason(off, "added mass") == "switched off"
 
 
-def test_a_viscous_liquid_damps_impacts_as_measured():
-    """exp(-35 / St): 0.70 at a Stokes number of 100, 0.17 at 20; Legendre et al. (2005)."""
+def test_a_viscous_liquid_damps_impacts():
     water, oil = make_plan(case()), make_plan(case(liquid={"kinematic_viscosity": 1e-4}))
     assert not water.lubrication
     assert "above 100" in reason(water, "lubrication")
     stokes = number(oil, "Stokes number of impacts")
     assert stokes.value == pytest.approx(2.5 * 1.0 * 0.01 / (9 * 1e-4))
     assert oil.lubrication
-    assert "leaves 0.28 of the restitution" in stokes.meaning
+    assert "the liquid between damps them" in stokes.meaning
+    assert "damps impacts" in reason(oil, "AdvanceSolids")
+    assert any("lubrication" in limit.name for limit in oil.solid_step.limits)
     assert not make_plan(case(fidelity={"lubrication": "off"})).lubrication
+
+
+def test_a_step_that_lubrication_bounds_is_one_that_the_solids_take(tmp_path):
+    """A ball in syrup drops on the wall and stays: little is left of a restitution of 0.9."""
+    still = Case(
+        end_time=0.5,
+        pipe={"radius": 0.05, "length": 0.4},
+        liquid={"density": 1000.0, "kinematic_viscosity": 5e-4, "bulk_velocity": 0.0},
+        solids={
+            "diameter": 0.01,
+            "density": 2500.0,
+            "youngs_modulus": 1e6,
+            "arrangement": {"kind": "list", "positions": [[0.1, 0.0, -0.04]]},
+        },
+        fidelity={"rayleigh_fraction": 0.5},
+        output={"every": 0.01, "figures": False},
+    )
+    plan = make_plan(still)
+    assert "lubrication" in plan.solid_step.binding.name
+    results = Simulation(still, tmp_path).run(bar=False)
+    upwards = results.solids.velocity[:, 0, 2]
+    assert 0 < upwards.max() < -0.2 * upwards.min()
+    assert results.solids.position[-1, 0, 2] == pytest.approx(-0.045, abs=2e-4)
 
 
 def test_held_solids_take_no_steps():

@@ -18,6 +18,7 @@ from mpsdem.plan import (
     Plan,
     gravity,
     impacts,
+    lubrication,
     materials,
     mean_diameter,
     spring_stiffness,
@@ -63,6 +64,7 @@ def build_state(case: Case, plan: Plan) -> State:
         walls=[geometry.Cylinder(radius=case.pipe.radius, velocity=np.zeros(3))],
         period=case.pipe.length,
         threads=plan.threads,
+        lubrication=lubrication(case),
     )
     exchange = None
     if plan.two_way and case.liquid is not None:
