@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mpsdem import Simulation, SimulationInterrupted
-from mpsdem._core import coupling
 from mpsdem.case import Case
 from mpsdem.simulation import run as time_loop
 
@@ -58,12 +57,11 @@ CASES = {
     "eulerian": case(liquid=WATER | {"model": "eulerian"}),
     "clear liquid, eulerian": case(liquid=WATER | {"model": "eulerian"}).with_(solids=None),
     "lagrangian, two-way": case(liquid=WATER | {"model": "lagrangian"}, coupling="two-way"),
-    "eulerian, two-way": case(liquid=WATER | {"model": "eulerian"}, coupling="two-way"),
-    "eulerian, two-way, light solids": case(
-        liquid=WATER | {"model": "eulerian"}, solids={"density": 1200.0}, coupling="two-way"
+    "lagrangian, two-way, light solids": case(
+        liquid=WATER | {"model": "lagrangian"}, solids={"density": 1200.0}, coupling="two-way"
     ),
-    "eulerian, held solids": case(
-        liquid=WATER | {"model": "eulerian"},
+    "lagrangian, held solids": case(
+        liquid=WATER | {"model": "lagrangian"},
         solids={"held": True, "arrangement": {"kind": "random"}},
         coupling="two-way",
     ),
@@ -112,8 +110,6 @@ def contents(results):
 
 @pytest.fixture(scope="module", params=CASES)
 def undisturbed(request, tmp_path_factory):
-    if CASES[request.param].fidelity.coupling == "two-way" and not hasattr(coupling, "Exchange"):
-        pytest.skip("this build has no exchange")
     directory = tmp_path_factory.mktemp("whole")
     with Simulation(CASES[request.param], directory).run() as results:
         return CASES[request.param], contents(results)

@@ -39,8 +39,8 @@ class Fidelity(Part):
         Whether a solid carries half its volume of liquid along, and feels the pressure that
         accelerates the liquid. ``"auto"``: where it is less than twice as dense as the liquid.
     lubrication : {"auto", "on", "off"}
-        Whether the liquid between two solids damps their impact: it lowers the restitution, as
-        measured at the Stokes number of the impacts. ``"auto"``: where that is below 100.
+        Whether the liquid in the gap between two solids, or at the wall, damps their impact.
+        ``"auto"``: where the Stokes number of impacts is below 100.
     particle_spacing : float, optional
         Distance between the particles of a computed liquid [m]; by default 1/10, 1/16 or 1/24 of
         the bore. The layout takes the nearest that divides the radius.

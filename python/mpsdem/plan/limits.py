@@ -13,8 +13,10 @@ from mpsdem.contacts import rayleigh_time
 from mpsdem.plan.scales import (
     COMPUTED,
     drag_rate,
+    has_lubrication,
     impacts,
     liquid_model,
+    lubrication_time,
     materials,
     pipe_profile,
     require_speed,
@@ -93,6 +95,9 @@ def _contact_scales(case: Case, speed: float) -> Iterator[_Scale]:
     diameter = solids.smallest_diameter
     pair, wall = impacts(case, diameter=diameter, speed=speed)
     collision = f"a collision at {speed:.3g} m/s"
+    if has_lubrication(case):
+        name = "the time in which lubrication slows a solid"
+        yield _Scale(name=name, time=lubrication_time(case))
     if solids.contact == "linear_spring":
         between, at_wall = spring_stiffness(case, speed)
         duration = min(pair.on_spring(between)[1], wall.on_spring(at_wall)[1])

@@ -38,7 +38,6 @@ from mpsdem.plan.scales import (
     spring_stiffness,
     terminal_velocity,
     turbulence,
-    wet_restitution,
 )
 
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
@@ -243,11 +242,7 @@ def _numbers(case: Case) -> Iterator[Number]:
         meaning="solids lag the liquid" if stokes > 0.1 else "solids follow the liquid",
     )
     if not solids.held:
-        damped = (
-            f"the liquid between leaves {wet_restitution(case):.2g} of the restitution"
-            if has_lubrication(case)
-            else "they rebound as if dry"
-        )
+        damped = "the liquid between damps them" if has_lubrication(case) else "as if dry"
         yield Number(
             name="Stokes number of impacts", value=impact_stokes(case), unit="", meaning=damped
         )
@@ -301,6 +296,8 @@ def _stages(case: Case, clock: Clock, turns: int) -> Iterator[Planned]:
         yield from _coupling_stages(case, turns)
         if not solids.held:
             reason = f"{case.solids_count} solids, {solids.contact}: {clock.substeps} steps a turn"
+            if has_lubrication(case):
+                reason += "; the liquid in narrow gaps damps impacts"
             yield Planned(name="AdvanceSolids", reason=reason)
         elif not two_way:
             yield Planned(name="HoldSolids", reason="they take up the drag, and stay (solids.held)")

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from mpsdem._core import coupling, mps
+from mpsdem._core import coupling, dem, mps
 from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
 from mpsdem.contacts import Impact, Stiffness
 
@@ -40,20 +40,19 @@ DILUTE = 1e-3
 # Density of the solids over that of the liquid below which half the liquid they displace, as much
 # as a sphere carries along, is more than a quarter of their own mass [-].
 _LIGHT = 2.0
-# An impact in liquid returns exp(-35 / St) of the dry restitution: two thirds at a Stokes number of
-# 100, nothing below 10. Legendre et al. (2005), doi:10.1063/1.2010527.
-_VISCOUS, _DAMPING = 100.0, 35.0  # [-]
-_LEAST_RESTITUTION = 0.01  # [-] of the dry one: no contact law returns nothing
+# Stokes number of an impact below which the liquid takes a third and more of the rebound [-]: it
+# leaves exp(-35 / St) of the restitution. Legendre et al. (2005), doi:10.1063/1.2010527.
+_VISCOUS = 100.0
+LEAST_GAP = 3e-3  # [-] over the reduced radius, that lubrication takes rough surfaces to leave
 
 
 def materials(case: Case) -> tuple[Material, Material]:
-    """Material of the solids and of the wall, softened by the stiffness factor, in the liquid."""
-    solids, wet = solids_of(case), wet_restitution(case)
+    """Material of the solids and of the wall, softened by the stiffness factor."""
+    solids = solids_of(case)
 
     def softened(material: Material) -> Material:
         values = material.model_dump(include=set(Material.model_fields))
         values["youngs_modulus"] *= case.fidelity.stiffness_factor
-        values["restitution"] *= wet
         return Material(**values)
 
     return softened(solids), softened(solids.at_wall)
@@ -255,20 +254,31 @@ def impact_stokes(case: Case) -> float:
     return density_ratio(case) * speed * mean_diameter(solids) / (9 * liquid.kinematic_viscosity)
 
 
-def wet_restitution(case: Case) -> float:
-    """Restitution of the hardest impacts to expect, over that without liquid [-]."""
-    if not has_lubrication(case):
-        return 1.0
-    stokes = impact_stokes(case)
-    return max(math.exp(-_DAMPING / stokes) if stokes > 0 else 0.0, _LEAST_RESTITUTION)
-
-
 def has_lubrication(case: Case) -> bool:
-    """Whether the liquid between two solids damps their impact."""
+    """Whether the liquid in the gap between two solids damps their impact."""
     if case.liquid is None or case.solids is None or case.solids.held:
         return False
     asked = case.fidelity.lubrication
     return asked == "on" or (asked == "auto" and impact_stokes(case) < _VISCOUS)
+
+
+def lubrication(case: Case) -> dem.Lubrication | None:
+    """Viscous force in the gaps between solids, and at the wall; None where it does not matter."""
+    if case.liquid is None or not has_lubrication(case):
+        return None
+    viscosity = case.liquid.density * case.liquid.kinematic_viscosity
+    return dem.Lubrication(viscosity=viscosity, least_gap=LEAST_GAP)
+
+
+def lubrication_time(case: Case) -> float:
+    """Time in which lubrication slows the smallest solid at the least gap, at the wall [s]."""
+    solids, liquid = solids_of(case), case.liquid
+    assert liquid is not None
+    radius = solids.smallest_diameter / 2
+    mass = solids.density * 4 / 3 * math.pi * radius**3
+    reduced = 1 / (1 / radius - 1 / (2 * case.pipe.radius))  # at a bore, of its mean curvature
+    viscosity = liquid.density * liquid.kinematic_viscosity
+    return mass / (6 * math.pi * viscosity * reduced * (1 / LEAST_GAP - 1))
 
 
 def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:

@@ -75,7 +75,7 @@ DIAGNOSTICS = _table(
     ("dissipation", "W/m", "Power input that is neither motion, contact nor height of the solids"),
     ("solids_mean_velocity", "m/s", "Axial velocity of the solids, weighted with their mass"),
     ("largest_overlap", "1", "Largest contact overlap over the radius, since the last frame"),
-    ("kinetic_energy", "J", "Kinetic energy of the solids, spin and added mass included"),
+    ("kinetic_energy", "J", "Kinetic energy of the solids, spin included"),
     ("elastic_energy", "J", "Energy stored in the contacts"),
     ("contacts", "1", "Number of touching pairs, walls included", "int64"),
     ("wall_force", "N", "Mean force of the walls on the solids since the last frame"),

@@ -18,6 +18,7 @@ from mpsdem.plan import (
     Plan,
     gravity,
     impacts,
+    lubrication,
     materials,
     mean_diameter,
     spring_stiffness,
@@ -55,7 +56,7 @@ def build_state(case: Case, plan: Plan) -> State:
         velocity=placement.velocity,
         spin=placement.spin,
         radius=placement.radius,
-        density=np.full(count, _inertia(case, plan)),
+        density=np.full(count, solids.density),
         pair_law=pair_law,
         wall_law=wall_law,
         pair_rolling_friction=solids.rolling_friction,
@@ -63,6 +64,7 @@ def build_state(case: Case, plan: Plan) -> State:
         walls=[geometry.Cylinder(radius=case.pipe.radius, velocity=np.zeros(3))],
         period=case.pipe.length,
         threads=plan.threads,
+        lubrication=lubrication(case),
     )
     exchange = None
     if plan.two_way and case.liquid is not None:
@@ -99,17 +101,17 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
             case "DragForce", Solids() as solids, scene.Liquid() as liquid:
                 yield DragForce(
                     law=DRAG_LAWS[solids.drag](),
-                    inertia=np.full(case.solids_count, _inertia(case, plan)),
+                    solid_density=np.full(case.solids_count, solids.density),
                     liquid_density=liquid.density,
                     kinematic_viscosity=liquid.kinematic_viscosity,
                 )
             case "AdvanceSolids", Solids() as solids, liquid:
-                inertia, displaced = _inertia(case, plan), liquid.density if liquid else 0.0
-                fall = (solids.density - displaced) / inertia * gravity(case)
+                displaced = liquid.density / solids.density if liquid else 0.0
+                felt = displaced if plan.added_mass else 0.0
                 yield AdvanceSolids(
-                    acceleration=np.tile(fall, (case.solids_count, 1)),
-                    displaced=displaced / inertia if plan.added_mass else 0.0,
-                    added_mass=ADDED_MASS,
+                    acceleration=np.tile((1 - displaced) * gravity(case), (case.solids_count, 1)),
+                    added_mass=ADDED_MASS * felt,
+                    displaced=felt,
                     substeps=plan.clock.substeps,
                     dry=liquid is None,
                     pipe_radius=pipe.radius,
@@ -127,13 +129,6 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     solids_density=case.solids.density if case.solids else 0.0,
                     liquid_density=case.liquid.density if case.liquid else 0.0,
                 )
-
-
-def _inertia(case: Case, plan: Plan) -> float:
-    """Mass that a force on a solid moves, the liquid it carries along included [kg/m3]."""
-    assert case.solids is not None
-    carried = ADDED_MASS * case.liquid.density if plan.added_mass and case.liquid else 0.0
-    return case.solids.density + carried
 
 
 def _contact_laws(case: Case, speed: float) -> tuple[ContactLaw, ContactLaw]:

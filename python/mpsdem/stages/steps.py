@@ -113,7 +113,7 @@ class DragForce:
 
     name: ClassVar[str] = "DragForce"
     law: DragLaw
-    inertia: FloatArray  # (n,) over the volume of a solid [kg/m3]
+    solid_density: FloatArray
     liquid_density: float
     kinematic_viscosity: float
 
@@ -134,7 +134,7 @@ class DragForce:
             velocity=solids.velocity,
             void_fraction=state.void_fraction,
             diameter=2 * solids.radius,
-            density=self.inertia,
+            density=self.solid_density,
             liquid_density=self.liquid_density,
             kinematic_viscosity=self.kinematic_viscosity,
         )
@@ -144,35 +144,28 @@ class DragForce:
 class AdvanceSolids:
     """Move the solids by contacts, drag, gravity and buoyancy, in many small steps.
 
-    With added mass, the solids' inertia is m + C M, with M the mass of the liquid that they
-    displace, and the liquid's own acceleration b moves them by (1 + C) M b: the added mass and the
-    pressure that accelerates the liquid, Maxey & Riley (1983), doi:10.1063/1.864230.
+    With added mass they also feel the pressure that accelerates the liquid around them, M b: the
+    mass M of the liquid that they displace times its acceleration b, drag apart. Maxey & Riley
+    (1983), doi:10.1063/1.864230, with both.
     """
 
     name: ClassVar[str] = "AdvanceSolids"
     acceleration: FloatArray  # (n, 3), gravity less buoyancy [m/s2]
-    displaced: float  # M / (m + C M), 0 without added mass [-]
-    added_mass: float  # C [-]
+    added_mass: float  # over the mass of a solid [-]
+    displaced: float  # M over the mass of a solid; 0 without added mass [-]
     substeps: int
     dry: bool
     pipe_radius: float
 
     def __call__(self, state: State, dt: float) -> None:
-        solids, before = state.solids, state.solids.velocity
-        acceleration = self.acceleration
+        solids, pressed = state.solids, np.zeros(3)
         if state.exchange is not None:
-            # its change by the drag of the solids is no acceleration of the liquid far from them
-            share = (1 + self.added_mass) * self.displaced
-            acceleration = acceleration + share * state.liquid_acceleration
-        self._force(state, acceleration)
+            pressed = self.displaced * state.liquid_acceleration
+        self._force(state, self.acceleration + pressed)
         report = solids.advance(dt / self.substeps, self.substeps)
         if not report.finite:
             check(state, self.pipe_radius)
-        state.turn_impulse = solids.drag_impulse
-        if self.displaced:
-            gain = dt * (acceleration - self.acceleration)
-            gain -= self.added_mass * self.displaced * (solids.velocity - before)
-            state.turn_impulse = state.turn_impulse + solids.mass[:, None] * gain
+        state.turn_impulse = solids.drag_impulse + dt * solids.mass[:, None] * pressed
         if state.exchange is not None:
             state.liquid_velocity = solids.liquid_velocity
         state.drag_impulse = state.drag_impulse + state.turn_impulse.sum(axis=0)
@@ -187,6 +180,7 @@ class AdvanceSolids:
                 acceleration=acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
+                added_mass=self.added_mass,
             )
         else:
             solids.set_forcing(
@@ -195,6 +189,7 @@ class AdvanceSolids:
                 drag_rate=state.drag_rate,
                 liquid_acceleration=state.liquid_acceleration,
                 relaxation=state.exchange.relaxation(solids.mass * state.drag_rate),
+                added_mass=self.added_mass,
             )
 
 
