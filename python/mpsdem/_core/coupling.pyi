@@ -2,10 +2,11 @@
 What liquid and solids do to each other. SI units throughout.
 """
 from __future__ import annotations
+import mpsdem._core.mps
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['Beetstra', 'DiFelice', 'ErgunWenYu', 'KochHill', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate']
+__all__: list[str] = ['Beetstra', 'DiFelice', 'ErgunWenYu', 'Exchange', 'KochHill', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate']
 class SchillerNaumann:
     """
     Drag of an isolated sphere.
@@ -248,6 +249,109 @@ class VoidFraction:
             [-], in [0.3, 1].
         clipped : int
             How many were below 0.3 and raised to it.
+        """
+class Exchange:
+    """
+    Two-way exchange between solids and a liquid, in Model B.
+    
+    A step: `begin` looks at the liquid around the solids; these go on, in substeps in which the liquid
+    at each of them relaxes with `relaxation`; `give` takes what they did, and `advance` moves the
+    liquid with it. The impulse on the solids is the liquid's loss to round-off.
+    
+    Parameters
+    ----------
+    smoothing_radius : float
+        Over which a solid acts on the liquid, and samples it [m].
+    liquid_density : float
+        [kg/m3].
+    
+    References
+    ----------
+    Zhou, Kuang, Chu & Yu (2010) doi:10.1017/S002211201000306X, set II.
+    """
+    def __init__(self, *, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex, liquid_density: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        ...
+    def advance(self, liquid: mpsdem._core.mps.LagrangianLiquid, dt: typing.SupportsFloat | typing.SupportsIndex) -> mpsdem._core.mps.LiquidReport:
+        """
+        Advance the liquid by dt [s] with the solids in it; returns its report.
+        """
+    def begin(self, liquid: mpsdem._core.mps.LagrangianLiquid, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+        """
+        Look at the liquid around the solids at the start of a step.
+        
+        Parameters
+        ----------
+        liquid : LagrangianLiquid
+        position : (n, 3) float64 ndarray
+            Of the solids, x within the pipe [m].
+        radius : (n,) float64 ndarray
+            [m].
+        
+        Raises
+        ------
+        ValueError
+            If a solid has no liquid within the smoothing radius.
+        """
+    def give(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mean_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], drag: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], impulse: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None, duration: typing.SupportsFloat | typing.SupportsIndex) -> None:
+        """
+        Take what the solids did over a step of the liquid.
+        
+        Parameters
+        ----------
+        position : (n, 3) float64 ndarray
+            At its start, x within the pipe [m].
+        mean_velocity : (n, 3) float64 ndarray
+            [m/s].
+        drag : (n,) float64 ndarray
+            Drag over slip, mean [kg/s].
+        impulse : (n, 3) float64 ndarray or None
+            That the drag gave them [N s]; None for solids that are held, which take any.
+        duration : float
+            [s].
+        """
+    def relaxation(self, drag: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Rate at which the solids near each solid bring the liquid to their own velocity.
+        
+        Parameters
+        ----------
+        drag : (n,) float64 ndarray
+            Drag over slip [kg/s].
+        
+        Returns
+        -------
+        (n,) float64 ndarray
+            [1/s].
+        """
+    @property
+    def clipped(self) -> int:
+        """
+        Void fractions of the liquid raised to the floor, last substep.
+        """
+    @property
+    def impulse(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) on the solids, over the last advance [N s].
+        """
+    @property
+    def liquid_acceleration(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) of the same, over the step before, drag apart [m/s2].
+        """
+    @property
+    def liquid_velocity(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 3) of the liquid at the solids, when the step began [m/s].
+        """
+    @property
+    def liquid_volume_error(self) -> float:
+        """
+        Liquid volume over bore less solids, less 1 [-].
+        """
+    @property
+    def mismatch(self) -> float:
+        """
+        Impulse on liquid and solids together, over the sum of the sizes of those on the solids [-].
         """
 def count_outside(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice | KochHill | Beetstra, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> int:
     """
