@@ -133,6 +133,9 @@ Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
         .def_readonly(
             "unexplained", &AdvanceReport::unexplained,
             "Of the axial momentum: what convection and pressure add, and must not [Pa/m].")
+        .def_readonly("convection_error", &AdvanceReport::convection_error,
+                      "Axial momentum that convection failed to keep between solids, and that was "
+                      "given back [Pa/m].")
         .def_readonly("divergence", &AdvanceReport::divergence,
                       "Root mean square divergence at the end, times spacing over speed [-].")
         .def_readonly("solve_seconds", &AdvanceReport::solve_seconds,
@@ -213,8 +216,10 @@ Tamai & Koshizuka (2014) doi:10.1007/s40571-014-0027-2.
              "convection"_a = "upwind", "scheme"_a = "rk2", "courant"_a = py::none(),
              "threads"_a = 1)
         .def("__len__", &Liquid::size)
-        .def("advance", &Liquid::advance, "dt"_a, py::call_guard<py::gil_scoped_release>(),
-             "Advance by dt [s], in as few substeps as Courant number and viscosity allow.")
+        .def(
+            "advance", [](Liquid& l, Real dt) { return l.advance(dt); }, "dt"_a,
+            py::call_guard<py::gil_scoped_release>(),
+            "Advance by dt [s], in as few substeps as Courant number and viscosity allow.")
         .def(
             "drive",
             [](Liquid& liquid, Real bulk_velocity, std::optional<Real> pressure_gradient) {
@@ -277,7 +282,11 @@ Returns
         .def_property_readonly(
             "viscosity", [](const Liquid& l) { return plane(l.viscosity(), l.stations()); },
             "(n, stations) molecular and eddy viscosity of the last stage [m2/s].")
-        .def_property_readonly("bulk_velocity", &Liquid::bulk_velocity, "Mean over the bore [m/s].")
+        .def_property_readonly(
+            "void_fraction", [](const Liquid& l) { return plane(l.void_fraction(), l.stations()); },
+            "(n, stations) share of the liquid, of the last substep [-].")
+        .def_property_readonly("bulk_velocity", &Liquid::bulk_velocity,
+                               "Flow rate of liquid and solids over the bore [m/s].")
         .def_property_readonly("pressure_gradient", &Liquid::pressure_gradient,
                                "Loss along the pipe in the last substep [Pa/m].")
         .def_property_readonly("wall_shear", &Liquid::wall_shear,
@@ -294,7 +303,8 @@ Returns
                 const auto s = l.snapshot();
                 return py::dict("velocity"_a = array(s.velocity), "pressure"_a = array(s.pressure),
                                 "friction_velocity"_a = array(s.friction_velocity),
-                                "drag"_a = array(s.drag), "gradient"_a = s.gradient);
+                                "drag"_a = array(s.drag), "gradient"_a = s.gradient,
+                                "loaded"_a = array(s.loaded));
             },
             "The exact state as arrays, for `restore`.")
         .def(
@@ -304,9 +314,10 @@ Returns
                 const auto pressure = state["pressure"].cast<Array<Real>>();
                 const auto friction = state["friction_velocity"].cast<Array<Real>>();
                 const auto drag = state["drag"].cast<Array<Real>>();
+                const auto loaded = state["loaded"].cast<Array<Real>>();
                 l.restore({copy(vectors(velocity, "velocity")), copy(values(pressure, "pressure")),
                            copy(values(friction, "friction_velocity")), copy(values(drag, "drag")),
-                           state["gradient"].cast<Real>()});
+                           state["gradient"].cast<Real>(), copy(values(loaded, "loaded"))});
             },
             "state"_a, "Continue bit-equal from a `state` of the same liquid.");
 }

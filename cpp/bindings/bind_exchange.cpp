@@ -1,5 +1,6 @@
 #include "bindings/array.hpp"
 #include "coupling/exchange.hpp"
+#include "mps/eulerian/liquid.hpp"
 #include "mps/lagrangian/liquid.hpp"
 
 #include <pybind11/pybind11.h>
@@ -10,6 +11,7 @@ namespace mpsdem::bindings {
 using namespace pybind11::literals;
 using coupling::Exchange;
 using Particles = mps::lagrangian::Liquid;
+using Nodes = mps::eulerian::Liquid;
 
 namespace {
 
@@ -62,6 +64,14 @@ Raises
 ValueError
     If a solid has no liquid within the smoothing radius.
 )")
+        .def(
+            "begin",
+            [](Exchange& e, Nodes& liquid, const Array<Real>& position, const Array<Real>& radius) {
+                const auto points = liquid.points();
+                e.begin(points, liquid.interior_velocity(), liquid.interior_acceleration(),
+                        vectors(position, "position"), values(radius, "radius"));
+            },
+            "liquid"_a, py::kw_only(), "position"_a, "radius"_a, "The same for a liquid on nodes.")
         .def_property_readonly(
             "liquid_velocity", [](const Exchange& e) { return array(copied(e.liquid_velocity())); },
             "(n, 3) of the liquid at the solids, when the step began [m/s].")
@@ -117,6 +127,10 @@ duration : float
             [](Exchange& e, Particles& liquid, Real dt) { return liquid.advance(dt, &e); },
             "liquid"_a, "dt"_a, py::call_guard<py::gil_scoped_release>(),
             "Advance the liquid by dt [s] with the solids in it; returns its report.")
+        .def(
+            "advance", [](Exchange& e, Nodes& liquid, Real dt) { return liquid.advance(dt, &e); },
+            "liquid"_a, "dt"_a, py::call_guard<py::gil_scoped_release>(),
+            "The same for a liquid on nodes.")
         .def_property_readonly(
             "impulse", [](const Exchange& e) { return array(copied(e.impulse())); },
             "(n, 3) on the solids, over the last advance [N s].")

@@ -18,6 +18,9 @@ constexpr Real most_substeps = 1e5; // of one call; beyond it the speeds have ru
 // [-] of the step at which the Runge-Kutta scheme leaves the negative real axis, on which viscosity
 // has its eigenvalues: 2 for two stages, 2.51 for three. The rest is for convection.
 constexpr Real viscous_share = 0.8;
+// [-] the same with solids: one stage, and a viscosity that differs with the void fraction
+constexpr Real viscous_limit_with_solids = 0.4;
+constexpr Real courant_with_solids = 0.45; // [-] measured: 0.6 held, 0.78 did not
 
 struct Weights {
     std::size_t count;
@@ -56,10 +59,10 @@ linear::CrossSectionSolver solver_of(const Section& section, const Stencil<2>& g
 Liquid::Liquid(const Section& section, Real pipe_length, std::span<const Vec3> velocity,
                Real density, Real kinematic_viscosity, Real roughness, Flow flow,
                const Drive& drive, const Numerics& numerics)
-    : section_(section), pipe_length_(pipe_length),
-      axial_{pipe_length / static_cast<Real>(numerics.stations)}, chunks_(numerics.stations),
-      density_(density), viscosity_(kinematic_viscosity), flow_(flow), drive_(drive),
-      numerics_(numerics), wall_law_(kinematic_viscosity, roughness, section),
+    : section_(section),
+      pipe_length_(pipe_length), axial_{pipe_length / static_cast<Real>(numerics.stations)},
+      chunks_(numerics.stations), density_(density), viscosity_(kinematic_viscosity), flow_(flow),
+      drive_(drive), numerics_(numerics), wall_law_(kinematic_viscosity, roughness, section),
       mixing_length_(section.pipe_radius()), gradient_stencil_(gradient_stencil(section)),
       laplacian_stencil_(laplacian_stencil(section)),
       upwind_stencil_(numerics.convection == Convection::upwind ? upwind_stencil(section)
@@ -103,18 +106,27 @@ Liquid::Liquid(const Section& section, Real pipe_length, std::span<const Vec3> v
     u_.z.wrap();
 }
 
-AdvanceReport Liquid::advance(Real dt) {
+AdvanceReport Liquid::advance(Real dt, Loading* loading) {
     require(dt > 0, "advance: dt must be > 0 s");
+    require(loading == nullptr || (source_.x.rows() == 0 && body_force_ == Vec3{}),
+            "advance: no body force or source in a liquid with solids");
     AdvanceReport report;
     const Weights weights = weights_of(numerics_.scheme);
     report.shortest = std::numeric_limits<Real>::infinity();
-    const Real before = interior_velocity();
+    const Real before = mean_interior_velocity();
+    if (loading == nullptr) loaded_.reset();
     for (Real left = dt; left > 1e-9 * dt;) {
         transport();
-        const Real count = std::ceil(left / allowed(report) - 1e-9);
+        const Real count = std::ceil(left / allowed(loading != nullptr, report) - 1e-9);
         report.sound = count < most_substeps;
         if (!report.sound) break;
         const Real length = left / std::max(count, 1.);
+        if (loading != nullptr) {
+            step_with_solids(length, *loading, dt - left, length / dt, report);
+            left -= length;
+            ++report.substeps;
+            continue;
+        }
         Real driven = 0, taken = 0; // [m/s] given and taken along the pipe over the substep
         for (std::size_t s = 0; s < weights.count; ++s) {
             const Stage stage{weights.kept[s], length};
@@ -137,8 +149,10 @@ AdvanceReport Liquid::advance(Real dt) {
         report.friction -= density_ * taken / dt;
     }
     if (report.substeps == 1) report.limit = Limit::none;
-    report.unexplained = density_ * (interior_velocity() - before) / dt - report.mean_gradient +
-                         report.friction - density_ * (body_force_.x + source_velocity_rate());
+    if (loading == nullptr)
+        report.unexplained = density_ * (mean_interior_velocity() - before) / dt -
+                             report.mean_gradient + report.friction -
+                             density_ * (body_force_.x + source_velocity_rate());
     report.divergence = residual_divergence();
     report.sound = report.sound && std::isfinite(report.divergence);
     return report;
@@ -173,7 +187,7 @@ void Liquid::transport() {
 }
 
 /// Longest step that is stable now [s]; not a number where a speed is none.
-Real Liquid::allowed(AdvanceReport& report) {
+Real Liquid::allowed(bool with_solids, AdvanceReport& report) {
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         Lanes most{}, bad{};
         for (std::size_t i = 0; i < section_.size(); ++i) {
@@ -192,8 +206,11 @@ Real Liquid::allowed(AdvanceReport& report) {
         if (std::isnan(rate)) return rate;
         most = std::max(most, rate);
     }
-    const Real courant = numerics_.courant / most;
-    const Real viscous = viscous_limit(numerics_.scheme) / (viscous_bound_ * largest_viscosity_);
+    const Real courant =
+        (with_solids ? std::min(numerics_.courant, courant_with_solids) : numerics_.courant) / most;
+    const Real viscous =
+        (with_solids ? viscous_limit_with_solids : viscous_limit(numerics_.scheme)) /
+        (viscous_bound_ * largest_viscosity_);
     const Real step = std::min(courant, viscous);
     if (step < report.shortest) {
         report.shortest = step;
@@ -373,7 +390,12 @@ Real Liquid::mean_drag() const {
 }
 
 Real Liquid::residual_divergence() {
-    find_divergence(u_, strain_);
+    if (loaded_) {
+        find_volume_flux(star_);
+        find_divergence(star_, strain_);
+    } else {
+        find_divergence(u_, strain_);
+    }
     std::vector<Real> fastest(chunks_.count());
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         Lanes square{}, most{};

@@ -3,9 +3,11 @@
 #include "linear/cross_section_solver.hpp"
 #include "mps/eulerian/carry_muscl.hpp"
 #include "mps/eulerian/carry_upwind.hpp"
+#include "mps/eulerian/loaded.hpp"
 #include "mps/eulerian/section.hpp"
 #include "mps/eulerian/stencil.hpp"
 #include "mps/eulerian/wall_law.hpp"
+#include "mps/load.hpp"
 
 #include <optional>
 #include <span>
@@ -43,6 +45,7 @@ struct AdvanceReport {
     Real mean_gradient = 0;    // [Pa/m] loss of pressure along the pipe, mean over the call
     Real friction = 0;         // [Pa/m] that the walls take up, mean over the call; turbulent only
     Real unexplained = 0;      // [Pa/m] of the axial momentum; turbulent only
+    Real convection_error = 0; // [Pa/m] of the axial momentum between solids, given back
     Real divergence = 0;       // [-] rms of div u, times spacing over the largest speed, at the end
     Real solve_seconds = 0;    // [s] in the pressure equation
     bool sound = true;         // false: speeds overflowed, or the step became too short
@@ -61,8 +64,19 @@ struct AdvanceReport {
 /// in each plane a force on the layer next to the wall makes the viscous terms sum to the wall's
 /// shear. A liquid of the mean flow. Operators across the pipe are stored for one plane.
 ///
-/// Every field is [node][station]; a momentum per mixture volume m = eps u would take the place of
-/// u here, with the same pressure matrix.
+/// With solids in it (`Load`), the momentum per volume m = eps u takes the place of u in the
+/// projection, with the same pressure matrix; the pressure p is kept, and one substep is
+///
+///   m* = [eps (u + dt H) + dt (D / rho + G / rho x^ - grad p / rho)] / (1 + dt beta / (rho eps))
+///   lap phi = div(m* + s),   n . grad phi = n . m* on the wall,   p += rho phi / dt
+///   m  = m* - grad phi + what holds the flux of the mixture, which goes into G
+///
+/// H are convection and viscosity, div(eps nu grad u) / eps, in Adams and Bashforth's second order:
+/// a pressure of Runge and Kutta's stages would have to be found without the drag's damping, and
+/// without the pressure of the step before a stiff bed would lose its drag. Within a Courant number
+/// of 0.45.
+///
+/// Every field is [node][station].
 ///
 /// Sources: Shu & Osher (1988), doi:10.1016/0021-9991(88)90177-5; Tamai & Koshizuka (2014),
 /// doi:10.1007/s40571-014-0027-2; Chorin (1968), doi:10.1090/S0025-5718-1968-0242392-2.
@@ -73,8 +87,9 @@ public:
            Real kinematic_viscosity, Real roughness, Flow flow, const Drive& drive,
            const Numerics& numerics);
 
-    /// Advance by dt [s], in as few equal substeps as Courant number and viscosity allow.
-    AdvanceReport advance(Real dt);
+    /// Advance by dt [s], in as few equal substeps as Courant number and viscosity allow; `loading`
+    /// tells of the solids in the liquid, if there are any. Not with a body force or a source.
+    AdvanceReport advance(Real dt, Loading* loading = nullptr);
 
     /// Drive the liquid otherwise from now on.
     void drive(const Drive& drive) { drive_ = drive; }
@@ -98,11 +113,20 @@ public:
     [[nodiscard]] Real pressure_noise() const; // [Pa] scatter of p about its mean
     [[nodiscard]] Real largest_viscosity() const noexcept { return largest_viscosity_; } // [m2/s]
 
+    /// As solids see the liquid: its inner nodes, [node][station], which share the bore.
+    [[nodiscard]] LiquidPoints points();
+    [[nodiscard]] std::span<const Vec3> interior_velocity();                     // [m/s]
+    [[nodiscard]] std::span<const Vec3> interior_acceleration() const noexcept { // [m/s2]
+        return loaded_ ? std::span<const Vec3>(loaded_->acceleration) : std::span<const Vec3>();
+    }
+    [[nodiscard]] std::vector<Real> void_fraction() const; // [-] of the last substep
+
     /// Exact state; restoring it continues bit-equal.
     struct Snapshot {
         std::vector<Vec3> velocity;
         std::vector<Real> pressure, friction_velocity, drag;
         Real gradient = 0;
+        std::vector<Real> loaded; // all that solids in it add; empty without
     };
     [[nodiscard]] Snapshot snapshot() const;
     void restore(const Snapshot& snapshot);
@@ -114,15 +138,24 @@ private:
     };
 
     void transport();
-    [[nodiscard]] Real allowed(AdvanceReport& report);
+    [[nodiscard]] Real allowed(bool with_solids, AdvanceReport& report);
     void predict(const Stage& stage);
     void project(const Stage& stage, AdvanceReport& report);
     [[nodiscard]] Real correct(Real kick);
     void meet_wall(std::size_t begin, std::size_t end);
+    void take_load(const Load& load);
+    [[nodiscard]] Real interior_momentum() const;
+    void step_with_solids(Real dt, Loading& loading, Real elapsed, Real share,
+                          AdvanceReport& report);
+    void find_rates();
+    [[nodiscard]] Real correct_with_solids(Real dt);
+    [[nodiscard]] Real settle_with_solids(Real dt, std::span<const Vec3> owed);
+    [[nodiscard]] Real mixture_velocity() const;
+    void find_volume_flux(VectorField& flux) const;
     void find_divergence(const VectorField& field, Field& result);
     [[nodiscard]] Real residual_divergence();
     [[nodiscard]] Real mean_drag() const;
-    [[nodiscard]] Real interior_velocity() const;
+    [[nodiscard]] Real mean_interior_velocity() const;
     [[nodiscard]] Real flux(const Field& velocity, std::size_t nodes) const;
     [[nodiscard]] Real source_velocity_rate() const;
 
@@ -153,8 +186,12 @@ private:
     std::vector<Real> drag_;                 // [m3/s2] of the wall, by station
     std::vector<Real> flux_, viscous_force_; // by station
     std::vector<Real> of_chunk_;
-    Vec3 body_force_;         // [m/s2]
-    Real pressure_scale_ = 0; // [kg/m3/s] p over phi
+    std::optional<Loaded> loaded_;
+    std::vector<Vec3> interior_position_, interior_velocity_; // [m], [m/s] as solids see them
+    std::vector<Real> interior_volume_;                       // [m3]
+    std::vector<Real> convection_; // [m3/s2] of momentum, by station; memory of a step
+    Vec3 body_force_;              // [m/s2]
+    Real pressure_scale_ = 0;      // [kg/m3/s] p over phi
     Real gradient_ = 0, largest_viscosity_ = 0;
 };
 

@@ -48,7 +48,8 @@ std::vector<Real> Liquid::pressure() const {
     Real mean = 0, weights = 0;
     for (std::size_t i = 0; i < section_.size(); ++i) {
         for (std::size_t k = 0; k < stations(); ++k) {
-            out[i * stations() + k] = pressure_scale_ * phi_[i][k];
+            out[i * stations() + k] =
+                loaded_ ? density_ * loaded_->pressure[i][k] : pressure_scale_ * phi_[i][k];
             mean += section_.area(i) * out[i * stations() + k];
             weights += section_.area(i);
         }
@@ -70,10 +71,10 @@ Real Liquid::flux(const Field& velocity, std::size_t nodes) const {
 }
 
 Real Liquid::bulk_velocity() const {
-    return flux(u_.x, section_.size()) / bore_area_;
+    return mixture_velocity();
 }
 
-Real Liquid::interior_velocity() const {
+Real Liquid::mean_interior_velocity() const {
     return flux(u_.x, section_.interior_count()) / interior_area_;
 }
 
@@ -89,16 +90,19 @@ Real Liquid::wall_shear() const {
 }
 
 Real Liquid::kinetic_energy() const {
-    Real sum = 0;
+    Real sum = 0, mass = 0;
     for (std::size_t i = 0; i < section_.size(); ++i) {
-        Real row = 0;
+        Real row = 0, share = 0;
         for (std::size_t k = 0; k < stations(); ++k) {
             const Vec3 u{u_.x[i][k], u_.y[i][k], u_.z[i][k]};
-            row += dot(u, u) / 2;
+            const Real eps = loaded_ ? loaded_->eps[i][k] : 1;
+            row += eps * dot(u, u) / 2;
+            share += eps;
         }
         sum += section_.area(i) * row;
+        mass += section_.area(i) * share;
     }
-    return sum / (bore_area_ * static_cast<Real>(stations()));
+    return sum / mass;
 }
 
 Real Liquid::pressure_noise() const {
@@ -111,7 +115,8 @@ Real Liquid::pressure_noise() const {
 }
 
 Liquid::Snapshot Liquid::snapshot() const {
-    Snapshot out{{}, packed(phi_), packed(friction_velocity_), drag_, gradient_};
+    Snapshot out{{}, packed(phi_), packed(friction_velocity_), drag_, gradient_, {}};
+    if (loaded_) out.loaded = loaded_->packed();
     for (Real& p : out.pressure) p *= pressure_scale_;
     out.velocity.reserve(size());
     for (std::size_t i = 0; i < section_.size(); ++i)
@@ -125,6 +130,11 @@ void Liquid::restore(const Snapshot& s) {
                 s.friction_velocity.size() == section_.wall_count() * stations() &&
                 s.drag.size() == stations(),
             "restore: the snapshot belongs to another liquid");
+    loaded_.reset();
+    if (!s.loaded.empty()) {
+        loaded_.emplace(section_.size(), stations());
+        loaded_->unpack(s.loaded);
+    }
     for (std::size_t i = 0; i < section_.size(); ++i) {
         for (std::size_t k = 0; k < stations(); ++k) {
             const Vec3& v = s.velocity[i * stations() + k];

@@ -271,10 +271,17 @@ class Exchange:
     """
     def __init__(self, *, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex, liquid_density: typing.SupportsFloat | typing.SupportsIndex) -> None:
         ...
+    @typing.overload
     def advance(self, liquid: mpsdem._core.mps.LagrangianLiquid, dt: typing.SupportsFloat | typing.SupportsIndex) -> mpsdem._core.mps.LiquidReport:
         """
         Advance the liquid by dt [s] with the solids in it; returns its report.
         """
+    @typing.overload
+    def advance(self, liquid: mpsdem._core.mps.EulerianLiquid, dt: typing.SupportsFloat | typing.SupportsIndex) -> mpsdem._core.mps.NodeLiquidReport:
+        """
+        The same for a liquid on nodes.
+        """
+    @typing.overload
     def begin(self, liquid: mpsdem._core.mps.LagrangianLiquid, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
         """
         Look at the liquid around the solids at the start of a step.
@@ -291,6 +298,11 @@ class Exchange:
         ------
         ValueError
             If a solid has no liquid within the smoothing radius.
+        """
+    @typing.overload
+    def begin(self, liquid: mpsdem._core.mps.EulerianLiquid, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> None:
+        """
+        The same for a liquid on nodes.
         """
     def give(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], mean_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], drag: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], impulse: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None, duration: typing.SupportsFloat | typing.SupportsIndex) -> None:
         """

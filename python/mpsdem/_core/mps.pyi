@@ -504,6 +504,11 @@ class NodeLiquidReport:
     What a call of EulerianLiquid.advance met.
     """
     @property
+    def convection_error(self) -> float:
+        """
+        Axial momentum that convection failed to keep between solids, and that was given back [Pa/m].
+        """
+    @property
     def divergence(self) -> float:
         """
         Root mean square divergence at the end, times spacing over speed [-].
@@ -648,7 +653,7 @@ class EulerianLiquid:
     @property
     def bulk_velocity(self) -> float:
         """
-        Mean over the bore [m/s].
+        Flow rate of liquid and solids over the bore [m/s].
         """
     @property
     def kinetic_energy(self) -> float:
@@ -687,6 +692,11 @@ class EulerianLiquid:
     def viscosity(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, stations) molecular and eddy viscosity of the last stage [m2/s].
+        """
+    @property
+    def void_fraction(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, stations) share of the liquid, of the last substep [-].
         """
     @property
     def wall_shear(self) -> float:

@@ -1,0 +1,367 @@
+#include "core/check.hpp"
+#include "core/parallel.hpp"
+#include "mps/eulerian/least_squares.hpp"
+#include "mps/eulerian/liquid.hpp"
+#include "mps/eulerian/viscous.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// The step of a liquid on nodes with solids in it.
+namespace mpsdem::mps::eulerian {
+
+namespace {
+
+Vector<Lanes> load(const VectorField& f, std::size_t i, std::size_t k) noexcept {
+    return {mpsdem::load(f.x[i] + k), mpsdem::load(f.y[i] + k), mpsdem::load(f.z[i] + k)};
+}
+
+void store(VectorField& f, std::size_t i, std::size_t k, const Vector<Lanes>& v) noexcept {
+    mpsdem::store(f.x[i] + k, v.x);
+    mpsdem::store(f.y[i] + k, v.y);
+    mpsdem::store(f.z[i] + k, v.z);
+}
+
+Vec3 at(const VectorField& f, std::size_t i, std::size_t k) noexcept {
+    return {f.x[i][k], f.y[i][k], f.z[i][k]};
+}
+
+void set(VectorField& f, std::size_t i, std::size_t k, const Vec3& v) noexcept {
+    f.x[i][k] = v.x;
+    f.y[i][k] = v.y;
+    f.z[i][k] = v.z;
+}
+
+} // namespace
+
+std::vector<Real> Loaded::packed() const {
+    std::vector<Real> out{step_before, gradient, error_before, friction_before};
+    const auto add = [&](const Field& f) {
+        for (std::size_t i = 0; i < f.rows(); ++i) out.insert(out.end(), f[i], f[i] + f.stations());
+    };
+    for (const Field* f : {&eps, &pressure, &flux.x, &flux.y, &flux.z, &rate_before.x,
+                           &rate_before.y, &rate_before.z})
+        add(*f);
+    for (const Vec3& a : acceleration) out.insert(out.end(), {a.x, a.y, a.z});
+    return out;
+}
+
+void Loaded::unpack(std::span<const Real> numbers) {
+    const std::size_t of_field = eps.rows() * eps.stations();
+    constexpr std::size_t scalars = 4, fields = 8;
+    const std::size_t known = scalars + fields * of_field;
+    require(numbers.size() > known && (numbers.size() - known) % 3 == 0,
+            "restore: the snapshot's load belongs to another liquid");
+    const Real* next = numbers.data();
+    for (Real* scalar : {&step_before, &gradient, &error_before, &friction_before})
+        *scalar = *next++;
+    for (Field* f : {&eps, &pressure, &flux.x, &flux.y, &flux.z, &rate_before.x, &rate_before.y,
+                     &rate_before.z}) {
+        for (std::size_t i = 0; i < f->rows(); ++i, next += f->stations())
+            std::copy_n(next, f->stations(), (*f)[i]);
+        f->wrap();
+    }
+    acceleration.resize((numbers.size() - known) / 3);
+    for (Vec3& a : acceleration) {
+        a = {next[0], next[1], next[2]};
+        next += 3;
+    }
+}
+
+LiquidPoints Liquid::points() {
+    if (interior_position_.empty()) {
+        // The inner nodes share the bore among them, as they share the force of its wall.
+        const Real share = axial_.spacing * bore_area_ / interior_area_;
+        for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+            for (std::size_t k = 0; k < stations(); ++k) {
+                Vec3 x = section_.place(i);
+                x.x = (static_cast<Real>(k) + 0.5) * axial_.spacing;
+                interior_position_.push_back(x);
+                interior_volume_.push_back(share * section_.area(i));
+            }
+        }
+    }
+    return {interior_position_, interior_volume_, pipe_length_};
+}
+
+std::span<const Vec3> Liquid::interior_velocity() {
+    interior_velocity_.resize(section_.interior_count() * stations());
+    for (std::size_t i = 0; i < section_.interior_count(); ++i)
+        for (std::size_t k = 0; k < stations(); ++k)
+            interior_velocity_[i * stations() + k] = at(u_, i, k);
+    return interior_velocity_;
+}
+
+/// Put the load on nodes, and on the walls what it is inward of them.
+void Liquid::take_load(const Load& load) {
+    Loaded& on = *loaded_;
+    const std::size_t inner = section_.interior_count(), n = stations();
+    for (std::size_t i = 0; i < inner; ++i) {
+        for (std::size_t k = 0; k < n; ++k) {
+            const std::size_t p = i * n + k;
+            on.eps[i][k] = load.void_fraction[p];
+            on.beta[i][k] = load.drag[p] / density_;
+            set(on.flux, i, k, load.solids_flux[p]);
+            set(on.drag, i, k, (1 / density_) * load.drag_of_solids[p]);
+        }
+    }
+    for (std::size_t w = 0; w < section_.wall_count(); ++w) {
+        const auto [node, share] = section_.inward(w);
+        const Vec3 normal = section_.outward(inner + w);
+        for (std::size_t k = 0; k < n; ++k) {
+            const auto inward = [&](const Field& f) {
+                return share[0] * f[node[0]][k] + share[1] * f[node[1]][k];
+            };
+            const auto inward_vector = [&](const VectorField& f) {
+                return Vec3{inward(f.x), inward(f.y), inward(f.z)};
+            };
+            on.eps[inner + w][k] = inward(on.eps);
+            on.beta[inner + w][k] = inward(on.beta);
+            set(on.drag, inner + w, k, inward_vector(on.drag));
+            set(on.flux, inner + w, k, tangential(inward_vector(on.flux), normal));
+        }
+    }
+}
+
+/// Mean of eps u_x over the inner nodes [m/s].
+Real Liquid::interior_momentum() const {
+    Real sum = 0;
+    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k) row += loaded_->eps[i][k] * u_.x[i][k];
+        sum += section_.area(i) * row;
+    }
+    return sum / (interior_area_ * static_cast<Real>(stations()));
+}
+
+/// One substep; `transport` has left the convective acceleration in star_.
+void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real share,
+                              AdvanceReport& report) {
+    const bool first = !loaded_;
+    if (first) loaded_.emplace(section_.size(), stations());
+    Loaded& on = *loaded_;
+    Real carried_to = interior_momentum();
+    take_load(loading.before(points(), elapsed, dt));
+    const Real before = interior_momentum();
+    if (first) carried_to = before;
+    (void)interior_velocity();
+    const std::size_t inner = section_.interior_count();
+
+    // du/dt by convection and viscosity; the walls' drag on the layer next to them.
+    find_rates();
+    const Real friction = -(flow_ == Flow::laminar ? mean(viscous_force_) / interior_area_
+                                                   : mean(on.wall_drag) / bore_area_);
+    // Adams and Bashforth's second order, for steps that may differ; Euler's for the first.
+    const Real ahead = on.step_before > 0 ? dt / (2 * on.step_before) : 0;
+    const auto extrapolated = [&](Real now, Real& earlier) {
+        const Real value = now + ahead * (now - earlier);
+        earlier = now;
+        return value;
+    };
+    const Real taken = extrapolated(friction, on.friction_before);
+    // Convection only moves momentum from place to place: what is not so is given back.
+    const Real misplaced = dt * extrapolated(mean(convection_) / interior_area_, on.error_before) +
+                           before - carried_to;
+
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        for (std::size_t i = 0; i < section_.size(); ++i) {
+            const bool is_wall = i >= inner;
+            const auto entries = gradient_stencil_.of(i);
+            const Vec3 n = is_wall ? section_.outward(i) : Vec3{};
+            for (std::size_t k = begin; k < end; k += lane_count) {
+                const auto slope = apply<1, 2>(entries, on.pressure, k);
+                const Lanes eps = mpsdem::load(on.eps[i] + k);
+                const Lanes damped = 1 / (1 + dt * mpsdem::load(on.beta[i] + k) / eps);
+                Vector<Lanes> push = load(on.drag, i, k); // less the pressure's gradient
+                push.x += on.gradient - axial_.first(on.pressure[i] + k);
+                push.y -= slope.of[0][0];
+                push.z -= slope.of[1][0];
+                const Vector<Lanes> s = load(on.flux, i, k), u = load(u_, i, k);
+                if (is_wall) { // no flux through it but what forces would push
+                    const Lanes through = dt * damped * (push.y * n.y + push.z * n.z);
+                    store(star_, i, k,
+                          {eps * u.x + s.x, eps * u.y + s.y + through * n.y,
+                           eps * u.z + s.z + through * n.z});
+                    continue;
+                }
+                const Vector<Lanes> now = load(star_, i, k), earlier = load(on.rate_before, i, k);
+                store(on.rate_before, i, k, now);
+                Vector<Lanes> m =
+                    eps * (u + (dt + Lanes{}) * (now + (ahead + Lanes{}) * (now - earlier)));
+                m.x -= misplaced;
+                m = damped * (m + (dt + Lanes{}) * push);
+                store(u_, i, k, (1 / eps) * m);
+                store(star_, i, k, m + s);
+            }
+            star_.x.wrap(i, begin, end);
+        }
+    });
+    on.step_before = dt;
+
+    find_divergence(star_, phi_);
+    parallel_for(section_.wall_count(), numerics_.threads, [&](std::size_t w) {
+        const std::size_t i = inner + w;
+        const Vec3 n = section_.outward(i);
+        for (std::size_t k = 0; k < stations(); k += lane_count)
+            mpsdem::store(phi_[i] + k,
+                          n.y * mpsdem::load(star_.y[i] + k) + n.z * mpsdem::load(star_.z[i] + k));
+    });
+    solver_.solve(linear::CrossSectionSolver::WallSource::given, numerics_.threads, phi_);
+
+    // What the solids get is the drag on the velocity before its pressure is known.
+    on.velocity.assign(interior_velocity_.begin(), interior_velocity_.end());
+    (void)interior_velocity();
+    const std::span<const Vec3> owed = loading.owed(interior_velocity_);
+    on.gradient += correct_with_solids(dt) / dt;
+    const Real exchanged = settle_with_solids(dt, owed);
+
+    const Real after = interior_momentum();
+    gradient_ = density_ * on.gradient;
+    report.mean_gradient += share * gradient_;
+    report.friction += share * density_ * taken;
+    report.convection_error += share * density_ * misplaced / dt;
+    report.unexplained +=
+        share * density_ * ((after - carried_to) / dt - on.gradient + taken - exchanged);
+}
+
+/// du/dt of the inner nodes into star_: convection stands there already.
+void Liquid::find_rates() {
+    Loaded& on = *loaded_;
+    const std::size_t inner = section_.interior_count();
+    on.wall_drag.assign(stations(), 0);
+    convection_.assign(stations(), 0);
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        for (std::size_t k = 0; k < stations(); ++k)
+            on.eps_viscosity[i][k] = on.eps[i][k] * nu_t_[i][k];
+        on.eps_viscosity.wrap(i, 0, stations());
+    }
+    if (flow_ == Flow::turbulent) { // the liquid's share of the wall's drag
+        for (std::size_t w = 0; w < section_.wall_count(); ++w) {
+            for (std::size_t k = 0; k < stations(); ++k) {
+                const Vec3 slip = at(u_, inner + w, k);
+                const Real speed = norm(slip), u_star = friction_velocity_[w][k];
+                if (speed > 0)
+                    on.wall_drag[k] -= section_.wall_share() * on.eps[inner + w][k] * u_star *
+                                       u_star * slip.x / speed;
+            }
+        }
+    }
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        for (std::size_t k = begin; k < end; ++k) viscous_force_[k] = 0;
+        for (std::size_t i = 0; i < inner; ++i) {
+            const auto entries = laplacian_stencil_.of(i);
+            const Real area = section_.area(i);
+            for (std::size_t k = begin; k < end; k += lane_count) {
+                const auto viscous = viscous_acceleration(entries, axial_, on.eps_viscosity, u_, i,
+                                                          static_cast<std::ptrdiff_t>(k));
+                const Lanes eps = mpsdem::load(on.eps[i] + k);
+                const Vector<Lanes> carried = load(star_, i, k);
+                mpsdem::store(&convection_[k],
+                              mpsdem::load(&convection_[k]) + area * (eps * carried.x));
+                mpsdem::store(&viscous_force_[k],
+                              mpsdem::load(&viscous_force_[k]) + area * viscous.x);
+                store(star_, i, k, carried + (1 / eps) * viscous);
+            }
+        }
+        if (flow_ == Flow::laminar) return;
+        for (const Index i : section_.layer()) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const Real missing =
+                    on.wall_drag[k] * interior_area_ / bore_area_ - viscous_force_[k];
+                star_.x[i][k] += missing / (layer_area_ * on.eps[i][k]);
+            }
+        }
+    });
+}
+
+/// From the volume flux in star_ and its pressure to the liquid's velocity, the walls' too. Returns
+/// what of the velocity was added along the pipe to hold the flux, or by the given gradient [m/s].
+Real Liquid::correct_with_solids(Real dt) {
+    Loaded& on = *loaded_;
+    const std::size_t inner = section_.interior_count();
+    parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
+        const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
+        for (std::size_t i = 0; i < section_.size(); ++i) {
+            const auto entries = gradient_stencil_.of(i);
+            for (std::size_t k = begin; k < end; k += lane_count) {
+                mpsdem::store(on.pressure[i] + k, mpsdem::load(on.pressure[i] + k) +
+                                                      (1 / dt) * mpsdem::load(phi_[i] + k));
+                if (i >= inner) continue;
+                const auto slope = apply<1, 2>(entries, phi_, k);
+                Vector<Lanes> w = load(star_, i, k);
+                w.x -= axial_.first(phi_[i] + k);
+                w.y -= slope.of[0][0];
+                w.z -= slope.of[1][0];
+                store(u_, i, k, (1 / mpsdem::load(on.eps[i] + k)) * (w - load(on.flux, i, k)));
+            }
+            on.pressure.wrap(i, begin, end);
+        }
+        meet_wall(begin, end);
+    });
+    const Real known = on.gradient * dt;
+    Real held = 0;
+    if (drive_.pressure_gradient)
+        held = dt * *drive_.pressure_gradient / density_ - known;
+    else
+        held = (drive_.bulk_velocity - mixture_velocity()) * bore_area_ / interior_area_;
+    for (std::size_t i = 0; i < inner; ++i)
+        for (std::size_t k = 0; k < stations(); ++k) u_.x[i][k] += held / on.eps[i][k];
+    return held;
+}
+
+/// Pay what the solids still owe, and note the acceleration that was not theirs. Returns what the
+/// solids gave to the mean of eps u_x over the inner nodes [m/s2].
+Real Liquid::settle_with_solids(Real dt, std::span<const Vec3> owed) {
+    Loaded& on = *loaded_;
+    on.acceleration.resize(owed.size());
+    Real given = 0;
+    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k) {
+            const std::size_t p = i * stations() + k;
+            const Real eps = on.eps[i][k];
+            const Vec3 drag = at(on.drag, i, k) - on.beta[i][k] * interior_velocity_[p];
+            on.acceleration[p] = (1 / dt) * (at(u_, i, k) - on.velocity[p]) - (1 / eps) * drag;
+            set(u_, i, k, at(u_, i, k) + (1 / (density_ * eps)) * owed[p]);
+            row += drag.x + owed[p].x / (density_ * dt);
+        }
+        given += section_.area(i) * row;
+    }
+    u_.x.wrap();
+    u_.y.wrap();
+    u_.z.wrap();
+    return given / (interior_area_ * static_cast<Real>(stations()));
+}
+
+/// eps u + s.
+void Liquid::find_volume_flux(VectorField& result) const {
+    const Loaded& on = *loaded_;
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        for (std::size_t k = 0; k < stations(); ++k)
+            set(result, i, k, on.eps[i][k] * at(u_, i, k) + at(on.flux, i, k));
+        result.x.wrap(i, 0, stations());
+    }
+}
+
+std::vector<Real> Liquid::void_fraction() const {
+    std::vector<Real> out(size(), 1);
+    for (std::size_t i = 0; i < (loaded_ ? section_.size() : 0); ++i)
+        std::copy_n(loaded_->eps[i], stations(), out.data() + i * stations());
+    return out;
+}
+
+Real Liquid::mixture_velocity() const {
+    if (!loaded_) return flux(u_.x, section_.size()) / bore_area_;
+    Real sum = 0;
+    for (std::size_t i = 0; i < section_.size(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k)
+            row += loaded_->eps[i][k] * u_.x[i][k] + loaded_->flux.x[i][k];
+        sum += section_.area(i) * row;
+    }
+    return sum / (bore_area_ * static_cast<Real>(stations()));
+}
+
+} // namespace mpsdem::mps::eulerian
