@@ -48,6 +48,8 @@ LIQUID = _table(
     ("profile_radius", "m", "Distances from the pipe axis at which the profile is given"),
     ("profile_velocity", "m/s", "Prescribed axial liquid velocity at those distances"),
     ("velocity_profile", "m/s", "Mean axial velocity of the liquid in rings at those distances"),
+    ("layer_height", "m", "Middles of equal layers from the bottom of the bore to its top, z"),
+    ("layer_velocity", "m/s", "Mean axial velocity of the liquid in those layers"),
     ("section_position", "m", "Middles of equal bins along the pipe"),
     ("section_pressure", "Pa", "Mean pressure in those bins, mean gradient and static head apart"),
     ("kind", "1", "Each recorded particle: 2 liquid, -2 wall, -1 ghost", "int8"),
