@@ -103,9 +103,10 @@ def solids_velocity_over_height(results: Results, times: Sequence[float] | None 
     with style():
         figure = Figure(figsize=(9.6 if both else 6.4, 4.4), layout="constrained")
         diagrams = figure.subplots(1, 2 if both else 1, sharex=True, sharey=True, squeeze=False)[0]
-        diagrams[0].set_title(heading(results, "velocity over height"))
+        of = " of the solids" if both else ""
+        diagrams[0].set_title(heading(results, f"velocity over height{of}"))
         if both:
-            diagrams[1].set_title("the liquid")
+            diagrams[1].set_title("of the liquid")
         if layered:
             liquid = results.liquid
             _over_height(

@@ -98,7 +98,8 @@ def liquid_sections(results: Results, times: Sequence[float] | None = None) -> F
                 cells = cells_at(axes, centre, values[column][slab], norm, colours)
                 axes.set_aspect("equal")
                 cells.set_clip_path(bore)
-                _cut_solids(axes, results, frame, (0, pipe.length / 2))
+                colour = INK if name == "pressure" else "white"
+                _cut_solids(axes, results, frame, (0, pipe.length / 2), colour)
                 axes.add_patch(
                     Circle((0, 0), pipe.radius, fill=False, edgecolor=INK, linewidth=1.0, zorder=3)
                 )
@@ -144,14 +145,16 @@ def liquid_middle_plane(results: Results, times: Sequence[float] | None = None) 
             near = _nearest(liquid.position[:, 1], 0.15 * pipe.radius, _MOST_LENGTHWISE)
             centre = liquid.position[near][:, [0, 2]]
             cells_at(axes, centre, liquid.velocity[near], norm, SPEED_COLOURS)
-            _cut_solids(axes, results, frame, (1, 0.0))
+            _cut_solids(axes, results, frame, (1, 0.0), "white")
         colour_bar(
             figure, strips, norm, SPEED_COLOURS, label="axial velocity (m/s)", values=_range(values)
         )
     return figure
 
 
-def _cut_solids(axes: Axes, results: Results, frame: int, plane: tuple[int, float]) -> None:
+def _cut_solids(
+    axes: Axes, results: Results, frame: int, plane: tuple[int, float], colour: str
+) -> None:
     """Outlines of the solids in a plane, given by the axis across it and its place there [m]."""
     if not results.has_solids:
         return
@@ -168,7 +171,7 @@ def _cut_solids(axes: Axes, results: Results, frame: int, plane: tuple[int, floa
         offsets=np.delete(position[cut], across, axis=1),
         offset_transform=axes.transData,
         facecolors="none",
-        edgecolors=INK,
+        edgecolors=colour,
         linewidths=0.5,
         zorder=2.5,
     )

@@ -73,6 +73,7 @@ DIAGNOSTICS = _table(
         "Flow rate over the cross-section of the bore: of liquid and solids where it feels them, "
         "else of the liquid",
     ),
+    ("liquid_flux", "m/s", "Flow rate of the liquid alone over the cross-section of the bore"),
     ("power_input", "W/m", "Flow rate times loss of pressure, since the last frame"),
     ("dissipation", "W/m", "Power input that is neither motion, contact nor height of the solids"),
     ("solids_mean_velocity", "m/s", "Axial velocity of the solids, weighted with their mass"),
