@@ -95,9 +95,10 @@ Wen & Yu (1966), Chem. Eng. Prog. Symp. Ser. 62, 100-111.
 )");
     bind_law<coupling::ErgunWenYu>(
         m, "ErgunWenYu",
-        R"(Ergun's packed bed up to a void fraction of 0.8, Wen & Yu above.
+        R"(Ergun's packed bed up to a void fraction of 0.8, Wen & Yu above: Gidaspow's law.
 
-The drag jumps at the switch, by a factor of 3.7 at a Reynolds number of 1000.
+Void fractions from 0.36 to 1; Reynolds numbers up to 2500 times the solid fraction in the bed,
+up to 2e5 above. The drag jumps at the switch, by a factor of 3.7 at a Reynolds number of 1000.
 
 References
 ----------
@@ -112,6 +113,22 @@ References
 ----------
 Di Felice (1994), doi:10.1016/0301-9322(94)90011-6.
 )");
+    bind_law<coupling::KochHill>(m, "KochHill", R"(Drag in random arrays of spheres, computed.
+
+Void fractions from 0.36 to 0.9, Reynolds numbers up to 200.
+
+References
+----------
+Koch & Hill (2001), doi:10.1146/annurev.fluid.33.1.619.
+)");
+    bind_law<coupling::Beetstra>(m, "Beetstra", R"(Drag in random arrays of spheres, computed.
+
+Void fractions from 0.4 to 0.9, Reynolds numbers up to 1000.
+
+References
+----------
+Beetstra, van der Hoef & Kuipers (2007), doi:10.1002/aic.11065.
+)");
 
     m.def("drag_rate", &drag_rate, "law"_a, py::kw_only(), "liquid_velocity"_a, "velocity"_a,
           "void_fraction"_a, "diameter"_a, "density"_a, "liquid_density"_a, "kinematic_viscosity"_a,
@@ -123,7 +140,7 @@ is that of the liquid's density.
 
 Parameters
 ----------
-law : SchillerNaumann, WenYu, ErgunWenYu or DiFelice
+law : SchillerNaumann, WenYu, ErgunWenYu, DiFelice, KochHill or Beetstra
 liquid_velocity, velocity : (n, 3) float64 ndarray
     At each solid, and its own [m/s].
 void_fraction : (n,) float64 ndarray
@@ -150,7 +167,7 @@ Zhou, Kuang, Chu & Yu (2010), doi:10.1017/S002211201000306X.
 
 Parameters
 ----------
-law : SchillerNaumann, WenYu, ErgunWenYu or DiFelice
+law : SchillerNaumann, WenYu, ErgunWenYu, DiFelice, KochHill or Beetstra
 liquid_velocity, velocity : (n, 3) float64 ndarray
     At each solid, and its own [m/s].
 void_fraction : (n,) float64 ndarray

@@ -11,9 +11,11 @@ namespace mpsdem::coupling {
 ///   ratio = (150 (1 - eps) + 1.75 Re) / (18 eps^2)
 ///
 /// Sources: Ergun (1952), Chem. Eng. Prog. 48, 89-94 (no DOI); the combination is that of
-/// Ding & Gidaspow (1990), doi:10.1002/aic.690360404. Ergun's data: void fractions 0.36 to 0.8
-/// here, Re / (1 - eps) up to 2500 (the viscous limit holds to 0). Deviation from nature: at the
-/// switch the drag falls at once, by a factor of 1.1 at Re 1, 1.7 at Re 100 and 3.7 at Re 1000.
+/// Ding & Gidaspow (1990), doi:10.1002/aic.690360404, whence its other name, Gidaspow's law. The
+/// reference paper of the horizontal pipe has it in eqs. 16 to 19, with the same switch, C_d and
+/// Reynolds number, without a misprint. Ergun's data: void fractions 0.36 to 0.8 here,
+/// Re / (1 - eps) up to 2500 (the viscous limit holds to 0). Deviation from nature: at the switch
+/// the drag falls at once, by a factor of 1.1 at Re 1, 1.7 at Re 100 and 3.7 at Re 1000.
 struct ErgunWenYu {
     static constexpr Real switch_void_fraction = 0.8; // [-]
 

@@ -6,7 +6,7 @@ import mpsdem._core.mps
 import numpy
 import numpy.typing
 import typing
-__all__: list[str] = ['DiFelice', 'ErgunWenYu', 'Exchange', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate']
+__all__: list[str] = ['Beetstra', 'DiFelice', 'ErgunWenYu', 'Exchange', 'KochHill', 'SchillerNaumann', 'VoidFraction', 'WenYu', 'count_outside', 'drag_rate']
 class SchillerNaumann:
     """
     Drag of an isolated sphere.
@@ -77,9 +77,10 @@ class WenYu:
         """
 class ErgunWenYu:
     """
-    Ergun's packed bed up to a void fraction of 0.8, Wen & Yu above.
+    Ergun's packed bed up to a void fraction of 0.8, Wen & Yu above: Gidaspow's law.
     
-    The drag jumps at the switch, by a factor of 3.7 at a Reynolds number of 1000.
+    Void fractions from 0.36 to 1; Reynolds numbers up to 2500 times the solid fraction in the bed,
+    up to 2e5 above. The drag jumps at the switch, by a factor of 3.7 at a Reynolds number of 1000.
     
     References
     ----------
@@ -118,6 +119,74 @@ class DiFelice:
     References
     ----------
     Di Felice (1994), doi:10.1016/0301-9322(94)90011-6.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def covers(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Whether the law's sources stand behind it there.
+        """
+    def force_ratio(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        Drag over Stokes's drag on the superficial slip, in Model A.
+        
+        Parameters
+        ----------
+        reynolds : float
+            Void fraction x slip x diameter / kinematic viscosity [-], >= 0.
+        void_fraction : float
+            Share of liquid around the sphere [-], in (0, 1].
+        
+        Returns
+        -------
+        float
+            Force / (3 pi x dynamic viscosity x diameter x void fraction x slip) [-].
+        """
+class KochHill:
+    """
+    Drag in random arrays of spheres, computed.
+    
+    Void fractions from 0.36 to 0.9, Reynolds numbers up to 200.
+    
+    References
+    ----------
+    Koch & Hill (2001), doi:10.1146/annurev.fluid.33.1.619.
+    """
+    def __init__(self) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def covers(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> bool:
+        """
+        Whether the law's sources stand behind it there.
+        """
+    def force_ratio(self, reynolds: typing.SupportsFloat | typing.SupportsIndex, void_fraction: typing.SupportsFloat | typing.SupportsIndex) -> float:
+        """
+        Drag over Stokes's drag on the superficial slip, in Model A.
+        
+        Parameters
+        ----------
+        reynolds : float
+            Void fraction x slip x diameter / kinematic viscosity [-], >= 0.
+        void_fraction : float
+            Share of liquid around the sphere [-], in (0, 1].
+        
+        Returns
+        -------
+        float
+            Force / (3 pi x dynamic viscosity x diameter x void fraction x slip) [-].
+        """
+class Beetstra:
+    """
+    Drag in random arrays of spheres, computed.
+    
+    Void fractions from 0.4 to 0.9, Reynolds numbers up to 1000.
+    
+    References
+    ----------
+    Beetstra, van der Hoef & Kuipers (2007), doi:10.1002/aic.11065.
     """
     def __init__(self) -> None:
         ...
@@ -284,13 +353,13 @@ class Exchange:
         """
         Impulse on liquid and solids together, over the sum of the sizes of those on the solids [-].
         """
-def count_outside(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> int:
+def count_outside(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice | KochHill | Beetstra, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> int:
     """
     How many solids lie outside what the drag law's sources stand for.
     
     Parameters
     ----------
-    law : SchillerNaumann, WenYu, ErgunWenYu or DiFelice
+    law : SchillerNaumann, WenYu, ErgunWenYu, DiFelice, KochHill or Beetstra
     liquid_velocity, velocity : (n, 3) float64 ndarray
         At each solid, and its own [m/s].
     void_fraction : (n,) float64 ndarray
@@ -305,7 +374,7 @@ def count_outside(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liqui
     int
         Number of solids for which ``law.covers`` is false.
     """
-def drag_rate(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
+def drag_rate(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice | KochHill | Beetstra, *, liquid_velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], void_fraction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], diameter: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], liquid_density: typing.SupportsFloat | typing.SupportsIndex, kinematic_viscosity: typing.SupportsFloat | typing.SupportsIndex) -> numpy.typing.NDArray[numpy.float64]:
     """
     Drag of each solid over its mass and slip, in Model B.
     
@@ -315,7 +384,7 @@ def drag_rate(law: SchillerNaumann | WenYu | ErgunWenYu | DiFelice, *, liquid_ve
     
     Parameters
     ----------
-    law : SchillerNaumann, WenYu, ErgunWenYu or DiFelice
+    law : SchillerNaumann, WenYu, ErgunWenYu, DiFelice, KochHill or Beetstra
     liquid_velocity, velocity : (n, 3) float64 ndarray
         At each solid, and its own [m/s].
     void_fraction : (n,) float64 ndarray

@@ -310,8 +310,9 @@ class Solids(Material):
         Of the linear spring [kg/s]; derived from the restitution if not given.
     impact_speed : float, optional
         Speed at which the derived linear spring is as stiff as the Hertz contact [m/s].
-    drag : {"ergun_wen_yu", "schiller_naumann", "wen_yu", "di_felice"}
-        Drag law.
+    drag : str
+        Drag law: "ergun_wen_yu", also named "gidaspow", "schiller_naumann", "wen_yu", "di_felice",
+        "koch_hill" or "beetstra".
     """
 
     diameter: Diameter
@@ -329,7 +330,15 @@ class Solids(Material):
     normal_damping: Annotated[float, Quantity("kg/s", at_least=0.0)] | None = None
     tangential_damping: Annotated[float, Quantity("kg/s", at_least=0.0)] | None = None
     impact_speed: Annotated[float, Quantity("m/s", above=0.0)] | None = None
-    drag: Literal["ergun_wen_yu", "schiller_naumann", "wen_yu", "di_felice"] = "ergun_wen_yu"
+    drag: Literal[
+        "ergun_wen_yu",
+        "gidaspow",
+        "schiller_naumann",
+        "wen_yu",
+        "di_felice",
+        "koch_hill",
+        "beetstra",
+    ] = "ergun_wen_yu"
 
     def problems(self) -> Iterable[Problem]:
         yield from self._wrong_number()

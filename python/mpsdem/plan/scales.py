@@ -15,12 +15,22 @@ from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
 from mpsdem.contacts import Impact, Stiffness
 
 FloatArray = NDArray[np.float64]
-DragLaw = coupling.SchillerNaumann | coupling.WenYu | coupling.ErgunWenYu | coupling.DiFelice
+DragLaw = (
+    coupling.SchillerNaumann
+    | coupling.WenYu
+    | coupling.ErgunWenYu
+    | coupling.DiFelice
+    | coupling.KochHill
+    | coupling.Beetstra
+)
 DRAG_LAWS: Mapping[str, type[DragLaw]] = {
     "schiller_naumann": coupling.SchillerNaumann,
     "wen_yu": coupling.WenYu,
     "ergun_wen_yu": coupling.ErgunWenYu,
+    "gidaspow": coupling.ErgunWenYu,
     "di_felice": coupling.DiFelice,
+    "koch_hill": coupling.KochHill,
+    "beetstra": coupling.Beetstra,
 }
 
 #: Models of a liquid that is computed, not prescribed.
