@@ -60,7 +60,8 @@ def frame(time, case=CASE, liquid="prescribed"):
     return fields | {"diagnostics": diagnostics}
 
 
-MEANS = {"velocity_profile", "section_pressure"}
+MEANS = {"velocity_profile", "layer_velocity", "section_pressure"}
+HEIGHTS = np.linspace(-0.95, 0.95, 12)  # of the layers, over the radius
 PARTICLES = 6000
 KIND = np.where(np.arange(PARTICLES) % 10 < 7, 2, np.where(np.arange(PARTICLES) % 10 < 9, -2, -1))
 BULK = 1.0  # [m/s]
@@ -100,6 +101,7 @@ def particle_frame(time, case):
         "velocity": velocity,
         "pressure": 200.0 + wave + 2.0 * noise.standard_normal(PARTICLES),
         "velocity_profile": profile,
+        "layer_velocity": BULK * (1 + 0.1 * HEIGHTS),
         "section_pressure": 2.0 * np.sin(2 * np.pi * section / length + time),
     }
     diagnostics = {
@@ -130,6 +132,7 @@ def open_writer(directory, case=CASE, liquid="prescribed"):
     else:
         constants = {
             "profile_radius": (np.arange(20) + 0.5) * radius / 20,
+            "layer_height": HEIGHTS * radius,
             "section_position": (np.arange(40) + 0.5) * length / 40,
         }
     if liquid == "particles":

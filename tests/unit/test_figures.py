@@ -13,6 +13,7 @@ from synthetic_results import (
     CASE,
     CLEAR,
     FRICTION_VELOCITY,
+    HEIGHTS,
     LAMINAR,
     TIMES,
     cluster,
@@ -293,7 +294,7 @@ def test_drag_on_solids_is_no_friction_of_the_wall(tmp_path):
     loss = drag / (np.pi * CASE.pipe.radius**2 * CASE.pipe.length)
     with open_writer(tmp_path, liquid="particles") as writer:
         fields = frame(0.0, CASE, "particles")
-        fields["diagnostics"]["drag_force"] = [drag, 0.0, 0.0]
+        fields["diagnostics"]["pressure_gradient_solids"] = loss
         fields["diagnostics"]["pressure_gradient"] += loss
         writer.append(0.0, **fields)
     labels = plot.liquid_velocity_profile(Results(tmp_path)).axes[0].get_legend().get_texts()
@@ -319,11 +320,42 @@ def test_the_solver_history_leaves_out_what_no_step_has_made_yet(particles):
     assert held.get_ydata().max() == 3
 
 
-def test_the_velocity_over_height_shows_a_computed_liquid_as_its_mean(particles):
-    (axes,) = plot.solids_velocity_over_height(particles).axes
-    u, height = curve(axes, "liquid, mean")
-    r = np.abs(height - CLEAR.pipe.radius)
-    np.testing.assert_allclose(u, mean_velocity(r, CLEAR), rtol=0.01)
+def test_a_computed_liquid_has_its_own_velocity_at_every_height_and_time(tmp_path):
+    results = Results(write_run(tmp_path, CASE, liquid="particles"))
+    of_solids, of_liquid = plot.solids_velocity_over_height(results, [0.0, 8.0]).axes
+    dashed = [line for line in of_liquid.lines if line.get_linestyle() == "--"]
+    assert [line.get_label() for line in dashed] == ["0 s", "8 s"]
+    for line in dashed:
+        np.testing.assert_allclose(line.get_ydata(), 0.1 * (1 + HEIGHTS))
+        np.testing.assert_allclose(line.get_xdata(), 1 + 0.1 * HEIGHTS)
+    drawn = {line.get_label() for line in of_solids.lines}
+    assert drawn >= {"0 s", "8 s"}
+
+
+def test_the_loss_of_pressure_is_drawn_with_its_parts(tmp_path):
+    with open_writer(tmp_path) as writer:
+        for time in TIMES:
+            fields = frame(time)
+            parts = {"pressure_gradient_friction": 50.0, "pressure_gradient_solids": 30.0 + time}
+            fields["diagnostics"] |= parts
+            writer.append(time, **fields)
+    (axes,) = plot.pressure_gradient_over_time(Results(tmp_path)).axes
+    lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+    assert np.all(lines["of the walls"] == 50.0)
+    np.testing.assert_allclose(lines["of the solids"], 30.0 + TIMES[1:])
+    low, high = axes.get_ylim()
+    assert low < 30.0
+    assert high > 80.0
+
+
+def test_a_section_of_the_liquid_cuts_the_solids_that_lie_in_it(tmp_path):
+    results = Results(write_run(tmp_path, CASE, liquid="particles"))
+    cut = plot.liquid_sections(results, [0.0]).axes[0]
+    (outlines,) = drawn_spheres(cut)
+    x = results.solids.position[0, :, 0]
+    here = np.abs(x - 2.0) < 0.01
+    assert len(outlines.get_offsets()) == here.sum() == 16
+    np.testing.assert_allclose(outlines.get_widths(), 0.02)
 
 
 def test_drawing_changes_no_settings_and_needs_no_display(results):

@@ -490,25 +490,3 @@ def test_a_light_sphere_lifts_half_its_volume_of_liquid_with_it(tmp_path):
     expected = 500.0 * 9.807 / 1000.0 * 1e-3
     assert results.solids.velocity[-1, 0, 2] == pytest.approx(expected, rel=1e-2)
     assert results.summary["momentum_error"] is None or results.summary["momentum_error"] < 1e-9
-
-
-def test_a_neutral_sphere_gains_speed_with_the_liquid(monkeypatch, tmp_path):
-    """What accelerates the liquid accelerates it alike; the drag has nothing to do."""
-
-    class Gaining(coupling.Exchange):
-        liquid_velocity = np.array([[0.5, 0.0, 0.0]])
-        liquid_acceleration = np.array([[2.0, 0.0, 0.0]])
-
-    monkeypatch.setattr(coupling, "Exchange", Gaining)
-    ball = {"diameter": 0.01, "density": 1000.0, "youngs_modulus": 1e6}
-    start = {"positions": [[0.1, 0.0, 0.0]], "velocities": [[0.5, 0.0, 0.0]]}
-    scene = Case(
-        end_time=1e-3,
-        pipe={"radius": 0.05, "length": 0.4},
-        liquid=WATER | {"model": "lagrangian"},
-        solids=ball | {"arrangement": {"kind": "list"} | start},
-        fidelity={"level": "quick", "coupling": "two-way"},
-        output={"every": 1e-3, "figures": False},
-    )
-    results = Simulation(scene, tmp_path).run(bar=False)
-    assert results.solids.velocity[-1, 0, 0] == pytest.approx(0.5 + 2e-3, rel=1e-6)

@@ -36,8 +36,8 @@ class Fidelity(Part):
         Whether the liquid feels the solids. ``"auto"``: where it is computed, in a periodic pipe,
         and the solids fill more than 0.001 of the bore; a prescribed profile never does.
     added_mass : {"auto", "on", "off"}
-        Whether a solid carries half its volume of liquid along, and feels the pressure that
-        accelerates the liquid. ``"auto"``: where it is less than twice as dense as the liquid.
+        Whether a solid carries half its volume of liquid along. ``"auto"``: where it is less than
+        twice as dense as the liquid.
     lubrication : {"auto", "on", "off"}
         Whether the liquid in the gap between two solids, or at the wall, damps their impact.
         ``"auto"``: where the Stokes number of impacts is below 100.

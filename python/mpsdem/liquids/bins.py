@@ -10,12 +10,23 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 RINGS = 20  # radial bins of the measured profile
+LAYERS = 12  # bins of its heights: each holds several points of a coarse liquid
 _MOST_WRITTEN = 10_000  # points of a frame, unless the case says otherwise
 
 
 def ring_edges(pipe_radius: float) -> FloatArray:
     """Borders of the radial bins [m]."""
     return np.linspace(0, pipe_radius, RINGS + 1)
+
+
+def middles(edges: FloatArray) -> FloatArray:
+    """Middles of bins between edges."""
+    return np.asarray(edges[1:] + edges[:-1]) / 2
+
+
+def layer_edges(pipe_radius: float) -> FloatArray:
+    """Borders of equal layers from the bottom of the bore to its top [m]."""
+    return np.linspace(-pipe_radius, pipe_radius, LAYERS + 1)
 
 
 def section_count(pipe_radius: float, pipe_length: float) -> int:

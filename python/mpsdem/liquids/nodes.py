@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import coupling, mps
 from mpsdem.geometry import Kind, NodeLayout
-from mpsdem.liquids.bins import bin_means, section_count
+from mpsdem.liquids.bins import LAYERS, bin_means, layer_edges, middles, section_count
 from mpsdem.liquids.protocol import FloatArray, Stored
 
 
@@ -95,6 +95,7 @@ class NodeLiquid:
 
     def static_fields(self) -> dict[str, ArrayLike]:
         fields: dict[str, ArrayLike] = {
+            "layer_height": middles(layer_edges(self.pipe_radius)),
             "profile_radius": np.arange(self._ring.max() + 1) * self.layout.spacing,
             "section_position": (np.arange(self._sections) + 0.5)
             * (self.pipe_length / self._sections),
@@ -114,9 +115,13 @@ class NodeLiquid:
         velocity, pressure = nodes.velocity, nodes.pressure
         ring = self._ring
         section = np.arange(layout.stations) * self._sections // layout.stations
+        layer = np.digitize(layout.place[:, 1], layer_edges(self.pipe_radius)[1:-1])
+        along = velocity[..., 0].mean(axis=1)
         mean_pressure = layout.area @ pressure / layout.area.sum()
         fields: dict[str, ArrayLike] = {
-            "velocity_profile": bin_means(ring, velocity[..., 0].mean(axis=1), ring.max() + 1),
+            "velocity_profile": bin_means(ring, along, ring.max() + 1),
+            "layer_velocity": bin_means(layer, layout.area * along, LAYERS)
+            / bin_means(layer, layout.area, LAYERS),
             "section_pressure": bin_means(section, mean_pressure, self._sections),
         }
         if self.written.size:

@@ -12,7 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import coupling, mps
 from mpsdem.geometry import Kind
-from mpsdem.liquids.bins import RINGS, bin_means, ring_edges, section_count
+from mpsdem.liquids.bins import (
+    LAYERS,
+    RINGS,
+    bin_means,
+    layer_edges,
+    middles,
+    ring_edges,
+    section_count,
+)
 from mpsdem.liquids.protocol import FloatArray, Stored
 
 #: What the particle liquid cuts and counts, by the names of its report and of the results.
@@ -135,9 +143,9 @@ class ParticleLiquid:
         return section_count(self.pipe_radius, self.pipe_length)
 
     def static_fields(self) -> dict[str, ArrayLike]:
-        edges = self._edges
         fields: dict[str, ArrayLike] = {
-            "profile_radius": (edges[1:] + edges[:-1]) / 2,
+            "profile_radius": middles(self._edges),
+            "layer_height": middles(layer_edges(self.pipe_radius)),
             "section_position": (np.arange(self._sections) + 0.5)
             * (self.pipe_length / self._sections),
         }
@@ -151,10 +159,12 @@ class ParticleLiquid:
         pressure = particles.pressure
         liquid = self._in_bore(position)
         ring = np.digitize(np.hypot(*position[liquid, 1:].T), self._edges[1:-1])
+        layer = np.digitize(position[liquid, 2], layer_edges(self.pipe_radius)[1:-1])
         share = position[liquid, 0] / self.pipe_length
         section = np.minimum((share * self._sections).astype(np.intp), self._sections - 1)
         fields: dict[str, ArrayLike] = {
             "velocity_profile": bin_means(ring, velocity[liquid, 0], RINGS),
+            "layer_velocity": bin_means(layer, velocity[liquid, 0], LAYERS),
             "section_pressure": bin_means(section, pressure[liquid], self._sections),
         }
         if self.written.size:

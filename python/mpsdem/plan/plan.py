@@ -43,6 +43,7 @@ from mpsdem.plan.scales import (
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 _SERIAL = 5000  # solids up to which threads cost more than they gain
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
+_FOOTPRINT_TIME = 3.5e-7  # [s] exchange of one solid with one point of the liquid, once
 _CALL_TIME = 1e-4  # [s] one turn of the time loop
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 # [s] one step of one liquid particle or node, its pressure included, and its memory
@@ -422,6 +423,10 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     particles, model = particle_count(case), liquid_model(case) or ""
     particle_time = particles * _PARTICLE_TIME.get(model, 0.0)
     particle_bytes = particles * _PARTICLE_BYTES.get(model, 0)
+    if is_two_way(case):
+        spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+        footprint = 4 / 3 * math.pi * (smoothing_radius(case) / spacing) ** 3
+        particle_time += count * footprint * _FOOTPRINT_TIME
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
         wall_seconds=(

@@ -17,7 +17,7 @@ from mpsdem.analysis import (
     volume_fraction_over_height,
 )
 from mpsdem.plot.drawing import curve_figure, legend_beside
-from mpsdem.plot.frames import chosen_frames, mean_of, second_half, when
+from mpsdem.plot.frames import chosen_frames, heading, mean_of, second_half, when
 from mpsdem.plot.style import ACCENTS, FAINT, INK, style, time_colours
 from mpsdem.results import Results
 
@@ -86,33 +86,43 @@ def solids_velocity_over_height(results: Results, times: Sequence[float] | None 
     Returns
     -------
     Figure
-        Solids as means over slabs, liquid on the vertical through the axis.
+        Solids as means over slabs. A computed liquid likewise, dashed, in a second diagram where
+        there are solids; a prescribed one on the vertical through the axis.
     """
     radius = results.case.pipe.radius
     edges = height_edges(radius, _SLABS)
+    layered = results.has_liquid and "layer_velocity" in results.liquid
+    both = layered and results.has_solids
 
-    def profile(frame: int) -> FloatArray:
+    def of_solids(frame: int) -> FloatArray:
         solids = results.solids
         return velocity_over_height(
             solids.position[frame], solids.velocity[frame], solids.radius, edges=edges
         )
 
     with style():
-        figure, axes = curve_figure(results, "velocity over height", size=(6.4, 4.4))
-        if results.has_liquid:
-            r = results.liquid.profile_radius
-            u, label = _liquid_profile(results)
-            known = np.isfinite(u)  # no particle may be in a thin ring round the axis
-            r, u = r[known], u[known]
-            height = radius + np.concatenate([-r[::-1], r])
-            axes.plot(
-                np.concatenate([u[::-1], u]), height, color=INK, linewidth=1.0, linestyle="--",
-                label=label,
+        figure = Figure(figsize=(9.6 if both else 6.4, 4.4), layout="constrained")
+        diagrams = figure.subplots(1, 2 if both else 1, sharex=True, sharey=True, squeeze=False)[0]
+        of = " of the solids" if both else ""
+        diagrams[0].set_title(heading(results, f"velocity over height{of}"))
+        if both:
+            diagrams[1].set_title("of the liquid")
+        if layered:
+            liquid = results.liquid
+            _over_height(
+                diagrams[-1], results, times, radius + liquid.layer_height,
+                lambda frame: liquid.layer_velocity[frame], linestyle="--",
             )  # fmt: skip
+        elif results.has_liquid:
+            _liquid_on_the_vertical(diagrams[0], results)
         if results.has_solids:
-            _over_height(axes, results, times, edges, profile)
-        axes.set_xlabel("axial velocity (m/s)")
-        _finish_height(axes, radius)
+            height = radius + (edges[1:] + edges[:-1]) / 2
+            _over_height(diagrams[0], results, times, height, of_solids)
+        for axes in diagrams:
+            axes.set_xlabel("axial velocity (m/s)")
+            axes.set_ylim(0, 2 * radius)
+        diagrams[0].set_ylabel("height above the bottom of the bore (m)")
+        legend_beside(diagrams[-1])
     return figure
 
 
@@ -145,7 +155,8 @@ def solids_fraction_over_height(results: Results, times: Sequence[float] | None 
 
     with style():
         figure, axes = curve_figure(results, "volume fraction over height", size=(6.4, 4.4))
-        _over_height(axes, results, times, edges, profile)
+        height = pipe.radius + (edges[1:] + edges[:-1]) / 2
+        _over_height(axes, results, times, height, profile)
         axes.set_xlabel("volume fraction of the solids, mean over the pipe (-)")
         axes.set_xlim(left=0)
         _finish_height(axes, pipe.radius)
@@ -163,23 +174,37 @@ def pressure_gradient_over_time(results: Results) -> Figure:
     Returns
     -------
     Figure
-        With the mean of the second half of the run.
+        With the mean of the second half of the run, and with solids the parts that the walls and
+        the drag of the solids have in it; what is left accelerates the liquid.
     """
-    time, gradient = results.time, results.pressure_gradient
+    time, gradient, numbers = results.time, results.pressure_gradient, results.diagnostics
     second_half = time >= time[-1] / 2
     mean = float(gradient[second_half].mean())
+    acted = slice(1, None) if time.size > 1 else slice(None)  # means since the last frame
     with style():
         figure, axes = curve_figure(results, "pressure loss along the pipe")
-        axes.plot(time, gradient, color=ACCENTS[2], linewidth=1.0)
+        axes.plot(time, gradient, color=ACCENTS[2], linewidth=1.0, label="whole")
         axes.hlines(
             mean, time[second_half][0], time[-1], color=ACCENTS[0],
             label=f"mean of the\nsecond half:\n{mean:.4g} Pa/m",
         )  # fmt: skip
+        parts = [name for name in _PARTS if name in numbers and results.has_solids]
+        for name, look in zip(parts, ("-", ":"), strict=False):
+            axes.plot(
+                time[acted], numbers[name][acted], color=INK, linewidth=0.9, linestyle=look,
+                label=_PARTS[name],
+            )  # fmt: skip
         axes.set(xlim=(time[0], time[-1] or 1.0), xlabel="time (s)")
         axes.set_ylabel("pressure loss, static head apart (Pa/m)")
-        _keep_to_the_usual(axes, gradient)
+        _keep_to_the_usual(axes, np.concatenate([gradient, *(numbers[n][acted] for n in parts)]))
         legend_beside(axes)
     return figure
+
+
+_PARTS = {
+    "pressure_gradient_friction": "of the walls",
+    "pressure_gradient_solids": "of the solids",
+}
 
 
 def _keep_to_the_usual(axes: Axes, values: FloatArray) -> None:
@@ -199,6 +224,17 @@ def _keep_to_the_usual(axes: Axes, values: FloatArray) -> None:
         )
 
 
+def _liquid_on_the_vertical(axes: Axes, results: Results) -> None:
+    radius, r = results.case.pipe.radius, results.liquid.profile_radius
+    u, label = _liquid_profile(results)
+    known = np.isfinite(u)  # no particle may be in a thin ring round the axis
+    r, u = r[known], u[known]
+    height = radius + np.concatenate([-r[::-1], r])
+    axes.plot(
+        np.concatenate([u[::-1], u]), height, color=INK, linewidth=1.0, linestyle="--", label=label
+    )
+
+
 def _liquid_profile(results: Results) -> tuple[FloatArray, str]:
     liquid = results.liquid
     if liquid.is_prescribed:
@@ -212,13 +248,16 @@ def _over_height(
     axes: Axes,
     results: Results,
     times: Sequence[float] | None,
-    edges: FloatArray,
+    height: FloatArray,
     profile: Callable[[int], FloatArray],
+    linestyle: str = "-",
 ) -> None:
-    height = edges[-1] + (edges[1:] + edges[:-1]) / 2
     frames = chosen_frames(results, times)
     for frame, colour in zip(frames, time_colours(len(frames)), strict=True):
-        axes.plot(profile(frame), height, color=colour, label=when(results.time[frame]))
+        axes.plot(
+            profile(frame), height, color=colour, linestyle=linestyle,
+            label=when(results.time[frame]),
+        )  # fmt: skip
     later = second_half(results)
     if len(later) > 1:
         mean, span = mean_of(results, later, profile)

@@ -185,9 +185,8 @@ def _theory(
         laminar = partial(laminar_profile, pipe_radius=pipe.radius, bulk_velocity=bulk)
         return laminar, "parabola", 0.0
     loss = float(results.pressure_gradient[frames].mean())
-    if "drag_force" in recorded:
-        bore = np.pi * pipe.radius**2 * pipe.length
-        loss -= float(recorded["drag_force"][frames, 0].mean()) / bore
+    if "pressure_gradient_solids" in recorded:
+        loss -= float(recorded["pressure_gradient_solids"][frames].mean())
     u_star = friction_velocity(loss, pipe_radius=pipe.radius, density=liquid.density)
     turbulent = partial(
         turbulent_profile,

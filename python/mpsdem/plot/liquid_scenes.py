@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -53,7 +54,8 @@ def liquid_sections(results: Results, times: Sequence[float] | None = None) -> F
     Figure
         Seen against the flow, one column per time; each point has the colour of the nearest
         particle among those within half a bore radius of the section, fewer of many and more of
-        few. Pressure less its mean over the recorded particles, mean gradient and head apart.
+        few. Pressure less its mean over the recorded particles, mean gradient and head apart. The
+        solids that the section cuts, as it cuts them.
     """
     pipe = results.case.pipe
     frames = chosen_frames(results, times)
@@ -96,6 +98,8 @@ def liquid_sections(results: Results, times: Sequence[float] | None = None) -> F
                 cells = cells_at(axes, centre, values[column][slab], norm, colours)
                 axes.set_aspect("equal")
                 cells.set_clip_path(bore)
+                colour = INK if name == "pressure" else "white"
+                _cut_solids(axes, results, frame, (0, pipe.length / 2), colour)
                 axes.add_patch(
                     Circle((0, 0), pipe.radius, fill=False, edgecolor=INK, linewidth=1.0, zorder=3)
                 )
@@ -127,7 +131,8 @@ def liquid_middle_plane(results: Results, times: Sequence[float] | None = None) 
     -------
     Figure
         One strip per time, the earliest on top; each point has the colour of the nearest particle
-        among those within 0.15 bore radii of the plane.
+        among those within 0.15 bore radii of the plane. The solids that the plane cuts, as it cuts
+        them.
     """
     pipe = results.case.pipe
     frames = chosen_frames(results, times)
@@ -136,14 +141,41 @@ def liquid_middle_plane(results: Results, times: Sequence[float] | None = None) 
     with style():
         figure, strips = strips_along(results, frames, "liquid in the middle plane", THINNEST)
         norm = _norm(values, even=False)
-        for axes, liquid in zip(strips, liquids, strict=True):
+        for axes, liquid, frame in zip(strips, liquids, frames, strict=True):
             near = _nearest(liquid.position[:, 1], 0.15 * pipe.radius, _MOST_LENGTHWISE)
             centre = liquid.position[near][:, [0, 2]]
             cells_at(axes, centre, liquid.velocity[near], norm, SPEED_COLOURS)
+            _cut_solids(axes, results, frame, (1, 0.0), "white")
         colour_bar(
             figure, strips, norm, SPEED_COLOURS, label="axial velocity (m/s)", values=_range(values)
         )
     return figure
+
+
+def _cut_solids(
+    axes: Axes, results: Results, frame: int, plane: tuple[int, float], colour: str
+) -> None:
+    """Outlines of the solids in a plane, given by the axis across it and its place there [m]."""
+    if not results.has_solids:
+        return
+    across, place = plane
+    position, radius = results.solids.position[frame], results.solids.radius
+    left = radius**2 - (position[:, across] - place) ** 2
+    cut = left > 0
+    size = 2 * np.sqrt(left[cut])
+    outlines = EllipseCollection(
+        widths=size,
+        heights=size,
+        angles=np.zeros_like(size),
+        units="xy",
+        offsets=np.delete(position[cut], across, axis=1),
+        offset_transform=axes.transData,
+        facecolors="none",
+        edgecolors=colour,
+        linewidths=0.5,
+        zorder=2.5,
+    )
+    axes.add_collection(outlines, autolim=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

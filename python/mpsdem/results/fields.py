@@ -48,6 +48,8 @@ LIQUID = _table(
     ("profile_radius", "m", "Distances from the pipe axis at which the profile is given"),
     ("profile_velocity", "m/s", "Prescribed axial liquid velocity at those distances"),
     ("velocity_profile", "m/s", "Mean axial velocity of the liquid in rings at those distances"),
+    ("layer_height", "m", "Middles of equal layers from the bottom of the bore to its top, z"),
+    ("layer_velocity", "m/s", "Mean axial velocity of the liquid in those layers"),
     ("section_position", "m", "Middles of equal bins along the pipe"),
     ("section_pressure", "Pa", "Mean pressure in those bins, mean gradient and static head apart"),
     ("kind", "1", "Each recorded particle: 2 liquid, -2 wall, -1 ghost", "int8"),
@@ -71,6 +73,7 @@ DIAGNOSTICS = _table(
         "Flow rate over the cross-section of the bore: of liquid and solids where it feels them, "
         "else of the liquid",
     ),
+    ("liquid_flux", "m/s", "Flow rate of the liquid alone over the cross-section of the bore"),
     ("power_input", "W/m", "Flow rate times loss of pressure, since the last frame"),
     ("dissipation", "W/m", "Power input that is neither motion, contact nor height of the solids"),
     ("solids_mean_velocity", "m/s", "Axial velocity of the solids, weighted with their mass"),

@@ -280,6 +280,16 @@ class LiquidResults:
         return Field(self._run, "liquid/velocity_profile")
 
     @property
+    def layer_height(self) -> FloatArray:
+        """Middles of equal layers from the bottom of the bore to its top, z, (h,) [m]."""
+        return self._run.read("liquid/layer_height")
+
+    @property
+    def layer_velocity(self) -> Field:
+        """Mean axial velocity of the liquid in those layers, (frames, h) [m/s]."""
+        return Field(self._run, "liquid/layer_velocity")
+
+    @property
     def section_position(self) -> FloatArray:
         """Middles of equal bins along the pipe, (s,) [m]."""
         return self._run.read("liquid/section_position")

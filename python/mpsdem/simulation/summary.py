@@ -257,9 +257,7 @@ def _liquid_momentum_error(plan: Plan, results: Results) -> float | None:
         # its bulk velocity holds that of the wall's nodes, which no force changes
         unexplained = impulse("liquid_unexplained")
     else:
-        flux = numbers["bulk_velocity"]
-        if plan.two_way:  # it holds the solids too
-            flux = flux - _concentration(plan, results) * numbers["solids_mean_velocity"]
+        flux = numbers["liquid_flux"]
         given = impulse("pressure_gradient") - impulse("pressure_gradient_solids")
         unexplained = liquid.density * float(flux[-1] - flux[first]) - given + friction
     return abs(unexplained / friction) if friction != 0 else None

@@ -107,11 +107,9 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                 )
             case "AdvanceSolids", Solids() as solids, liquid:
                 displaced = liquid.density / solids.density if liquid else 0.0
-                felt = displaced if plan.added_mass else 0.0
                 yield AdvanceSolids(
                     acceleration=np.tile((1 - displaced) * gravity(case), (case.solids_count, 1)),
-                    added_mass=ADDED_MASS * felt,
-                    displaced=felt,
+                    added_mass=ADDED_MASS * displaced if plan.added_mass else 0.0,
                     substeps=plan.clock.substeps,
                     dry=liquid is None,
                     pipe_radius=pipe.radius,

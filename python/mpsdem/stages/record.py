@@ -54,6 +54,7 @@ class Record:
             liquid, of_liquid = state.liquid.frame()
             diagnostics |= of_liquid
             self._split_gradient(state, diagnostics)
+            diagnostics["liquid_flux"] = self._liquid_flux(state, diagnostics)
         self._energy(state, diagnostics, interval)
         self.writer.append(state.time, solids=solids, liquid=liquid, diagnostics=diagnostics)
         state.frame_time = state.time
@@ -124,6 +125,14 @@ class Record:
         numbers["pressure_gradient_solids"] = of_solids
         if state.exchange is None:
             numbers["pressure_gradient"] = np.add(numbers["pressure_gradient"], of_solids)
+
+    def _liquid_flux(self, state: State, numbers: Fields) -> float:
+        """That of the liquid alone [m/s], where what flows through the bore holds solids too."""
+        flux = float(np.asarray(numbers["bulk_velocity"]))
+        if state.exchange is None:
+            return flux
+        volume = 4 / 3 * np.pi * state.solids.radius**3
+        return flux - float(volume @ state.mean_velocity[:, 0]) / self.pipe.bore_volume
 
     def _energy(self, state: State, numbers: Fields, interval: float) -> None:
         """What the loss of pressure puts in, and what of it is neither motion nor height."""

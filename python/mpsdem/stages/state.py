@@ -56,8 +56,8 @@ class State:
         Of the solids in it, so far: each turn has its share of the whole step [m/s].
     mean_drag : (n,) float64 ndarray
         Drag over slip in it, likewise [kg/s].
-    turn_impulse, impulse : (n, 3) float64 ndarray
-        Of the liquid on each solid in the last turn, and in the liquid's step so far [N s].
+    impulse : (n, 3) float64 ndarray
+        Of the liquid on each solid in it, so far [N s].
     drag_impulse : (3,) float64 ndarray
         Momentum that the liquid has given to all solids since the start, buoyancy apart [N s].
     largest_overlap : float
@@ -91,7 +91,6 @@ class State:
     begun_at: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     mean_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     mean_drag: FloatArray = field(default_factory=lambda: np.zeros(0))
-    turn_impulse: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     impulse: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     drag_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     largest_overlap: float = 0.0

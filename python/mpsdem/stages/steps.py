@@ -142,49 +142,40 @@ class DragForce:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdvanceSolids:
-    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps.
-
-    With added mass they also feel the pressure that accelerates the liquid around them, M b: the
-    mass M of the liquid that they displace times its acceleration b, drag apart. Maxey & Riley
-    (1983), doi:10.1063/1.864230, with both.
-    """
+    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps."""
 
     name: ClassVar[str] = "AdvanceSolids"
     acceleration: FloatArray  # (n, 3), gravity less buoyancy [m/s2]
     added_mass: float  # over the mass of a solid [-]
-    displaced: float  # M over the mass of a solid; 0 without added mass [-]
     substeps: int
     dry: bool
     pipe_radius: float
 
     def __call__(self, state: State, dt: float) -> None:
-        solids, pressed = state.solids, np.zeros(3)
-        if state.exchange is not None:
-            pressed = self.displaced * state.liquid_acceleration
-        self._force(state, self.acceleration + pressed)
+        solids = state.solids
+        self._force(state)
         report = solids.advance(dt / self.substeps, self.substeps)
         if not report.finite:
             check(state, self.pipe_radius)
-        state.turn_impulse = solids.drag_impulse + dt * solids.mass[:, None] * pressed
         if state.exchange is not None:
             state.liquid_velocity = solids.liquid_velocity
-        state.drag_impulse = state.drag_impulse + state.turn_impulse.sum(axis=0)
+        state.drag_impulse = state.drag_impulse + solids.drag_impulse.sum(axis=0)
         state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
 
-    def _force(self, state: State, acceleration: FloatArray) -> None:
+    def _force(self, state: State) -> None:
         solids = state.solids
         if self.dry:
-            solids.set_forcing(acceleration=acceleration)
+            solids.set_forcing(acceleration=self.acceleration)
         elif state.exchange is None:
             solids.set_forcing(
-                acceleration=acceleration,
+                acceleration=self.acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
                 added_mass=self.added_mass,
             )
         else:
             solids.set_forcing(
-                acceleration=acceleration,
+                acceleration=self.acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
                 liquid_acceleration=state.liquid_acceleration,
@@ -217,7 +208,7 @@ class ExchangeMomentum:
         state.mean_drag = state.mean_drag + solids.mass * state.drag_rate / self.turns
         if not self.held:
             state.mean_velocity = state.mean_velocity + solids.mean_velocity / self.turns
-            state.impulse = state.impulse + state.turn_impulse
+            state.impulse = state.impulse + solids.drag_impulse
         if state.step % self.turns:
             return
         exchange.give(
