@@ -7,16 +7,22 @@ from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from mpsdem._core import coupling, dem, mps
+from mpsdem.plan.scales import DragLaw
+from mpsdem.validation import suspension
 from mpsdem.validation.program import results_of
 from mpsdem.validation.registry import Check, Source
 
 GRAVITY = 9.81  # [m/s2]
 GLASS = 2500.0  # [kg/m3]
+BED_VOID_FRACTION = 0.4  # [-]
 
+BEETSTRA = Source(cite="Beetstra et al. (2007)", reference="doi:10.1002/aic.11065")
 DI_FELICE = Source(cite="Di Felice (1994)", reference="doi:10.1016/0301-9322(94)90011-6")
 ERGUN = Source(cite="Ergun (1952)", reference="Chem. Eng. Prog. 48, 89-94")
+KOCH_HILL = Source(cite="Koch & Hill (2001)", reference="doi:10.1146/annurev.fluid.33.1.619")
 WEN_YU = Source(cite="Wen & Yu (1966)", reference="Chem. Eng. Prog. Symp. Ser. 62, 100-111")
 SCHILLER_NAUMANN = Source(
     cite="Schiller & Naumann (1933)", reference="Z. Ver. Dtsch. Ing. 77, 318-320"
@@ -44,8 +50,6 @@ every = 0.01
 figures = false
 """
 
-DragLaw = coupling.SchillerNaumann | coupling.WenYu | coupling.ErgunWenYu | coupling.DiFelice
-
 
 def checks() -> Iterator[Check]:
     """All checks of this module."""
@@ -59,17 +63,19 @@ def checks() -> Iterator[Check]:
 def _laws() -> Iterator[Check]:
     """Forces over 3 pi mu d eps r in Model A, worked out from the published equations."""
     table = (
-        # void fraction, Reynolds number, Di Felice, Ergun, Wen & Yu
-        (0.4, 1, "30.05", "31.86", "32.60"),
-        (0.4, 100, "90.06", "92.01", "128.9"),
-        (0.6, 1, "7.30", "9.53", "7.42"),
-        (0.6, 100, "25.35", "36.27", "29.35"),
-        (0.8, 1, "2.68", "2.76", "2.60"),
-        (0.8, 100, "10.31", "17.80", "10.27"),
-        (0.8, 1000, "55.5", "154.5", "41.4"),
+        # void fraction, Reynolds number, Di Felice, Beetstra, Koch & Hill, Ergun, Wen & Yu
+        (0.4, 1, "30.05", "37.87", "37.99", "31.86", "32.60"),
+        (0.4, 100, "90.06", "89.79", "86.70", "92.01", "128.9"),
+        (0.6, 1, "7.30", "11.84", "11.25", "9.53", "7.42"),
+        (0.6, 100, "25.35", "30.74", "24.62", "36.27", "29.35"),
+        (0.8, 1, "2.68", "4.25", "4.25", "2.76", "2.60"),
+        (0.8, 100, "10.31", "12.95", "11.39", "17.80", "10.27"),
+        (0.8, 1000, "55.5", "71.3", "76.4", "154.5", "41.4"),
     )
     laws: tuple[tuple[str, DragLaw, Source], ...] = (
         ("di_felice", coupling.DiFelice(), DI_FELICE),
+        ("beetstra", coupling.Beetstra(), BEETSTRA),
+        ("koch_hill", coupling.KochHill(), KOCH_HILL),
         ("ergun", coupling.ErgunWenYu(), ERGUN),
         ("wen_yu", coupling.WenYu(), WEN_YU),
     )
@@ -93,7 +99,9 @@ def _lone_solid() -> Iterator[Check]:
         (0.5, 0.07347),
         (1, 0.14606),
         (2, 0.26764),
+        (3, 0.36630),
         (5, 0.47289),
+        (10, 0.66877),
         (15, 0.81907),
     ):
         yield Check(
@@ -161,7 +169,7 @@ def _crowd() -> Iterator[Check]:
 
 
 def _beds() -> Iterator[Check]:
-    """Packed beds of void fraction 0.4 in water."""
+    """Beds of glass beads in water, void fraction 0.4."""
     for velocity, gradient in (
         (0.001, 219.5),
         (0.005, 1261.5),
@@ -173,10 +181,28 @@ def _beds() -> Iterator[Check]:
             id=f"bed/pressure/{velocity}",
             claim="the drag of all solids is the pressure loss of a packed bed",
             expected=gradient,
-            measure=partial(_bed_gradient, velocity),
+            measure=partial(_bed_gradient, velocity, 2e-3),
             relative=1e-3,
             unit="Pa/m",
             source=ERGUN,
+        )
+    for millimetres, lift in ((1, "0.00892"), (2, "0.02239"), (3, "0.03255")):
+        yield Check(
+            id=f"bed/lift/{millimetres}mm/velocity",
+            claim="a bed lifts where the drag of all solids is their weight in the liquid",
+            expected=float(lift),
+            measure=partial(_lift_velocity, millimetres * 1e-3),
+            absolute=_half_digit(lift),
+            unit="m/s",
+            source=ERGUN,
+        )
+        yield Check(
+            id=f"bed/lift/{millimetres}mm/pressure",
+            claim="where Ergun's bed lifts, the pressure loss is the weight, whatever the diameter",
+            expected=8839.6,
+            measure=partial(_lift_gradient, millimetres * 1e-3),
+            absolute=0.051,
+            unit="Pa/m",
         )
 
 
@@ -244,21 +270,44 @@ def _bead(diameter: float) -> dem.Solids:
     )
 
 
-def _bed_gradient(superficial_velocity: float) -> float:
-    """Drag of the 2 mm beads of a packed bed over its volume [Pa/m]."""
-    void_fraction = 0.4
-    slip = superficial_velocity / void_fraction
+def _bed_gradient(superficial_velocity: float, diameter: float) -> float:
+    """Drag of the beads of a packed bed over its volume [Pa/m]."""
+    bed = _bed(diameter)
+    slip = superficial_velocity / BED_VOID_FRACTION
     (rate,) = coupling.drag_rate(
         coupling.ErgunWenYu(),
         liquid_velocity=np.array([[slip, 0.0, 0.0]]),
         velocity=np.zeros((1, 3)),
-        void_fraction=np.array([void_fraction]),
-        diameter=np.array([2e-3]),
+        void_fraction=np.array([BED_VOID_FRACTION]),
+        diameter=np.array([diameter]),
         density=np.array([GLASS]),
+        liquid_density=bed.liquid_density,
+        kinematic_viscosity=bed.kinematic_viscosity,
+    )
+    return float((1 - BED_VOID_FRACTION) * GLASS * rate * slip)
+
+
+def _lift_velocity(diameter: float) -> float:
+    """Superficial velocity at which the drag of the beads is their weight in the liquid [m/s]."""
+    weight = suspension.fluidised_bed_gradient(_bed(diameter), BED_VOID_FRACTION)
+    return float(brentq(lambda u: _bed_gradient(u, diameter) - weight, 0.0, 1.0))
+
+
+def _lift_gradient(diameter: float) -> float:
+    """Drag over volume at the velocity where Ergun's bed lifts [Pa/m]."""
+    velocity = suspension.minimum_fluidisation_velocity(_bed(diameter), BED_VOID_FRACTION)
+    return _bed_gradient(velocity, diameter)
+
+
+def _bed(diameter: float) -> suspension.Sphere:
+    """A bead of a bed in water."""
+    return suspension.Sphere(
+        diameter=diameter,
+        density=GLASS,
         liquid_density=998.2,
         kinematic_viscosity=1.002e-3 / 998.2,
+        gravity=GRAVITY,
     )
-    return float((1 - void_fraction) * GLASS * rate * slip)
 
 
 @cache
