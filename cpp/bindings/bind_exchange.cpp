@@ -135,7 +135,7 @@ duration : float
             "impulse", [](const Exchange& e) { return array(copied(e.impulse())); },
             "(n, 3) on the solids, over the last advance [N s].")
         .def_property_readonly("clipped", &Exchange::clipped,
-                               "Void fractions of the liquid raised to the floor, last substep.")
+                               "Void fractions of the liquid raised to the floor in the last advance.")
         .def_property_readonly("mismatch", &Exchange::mismatch,
                                "Impulse on liquid and solids together, over the sum of the sizes "
                                "of those on the solids [-].")

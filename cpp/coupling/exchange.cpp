@@ -36,7 +36,6 @@ void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
     void_fraction_.assign(n, 0);
     for (std::size_t p = 0; p < volume_.size(); ++p)
         footprints_.spread(p, volume_[p], void_fraction_);
-    clipped_ = 0;
     Real bore = 0, liquid = 0, solids = 0;
     for (std::size_t i = 0; i < n; ++i) {
         Real& eps = void_fraction_[i];
@@ -74,6 +73,7 @@ void Exchange::give(const SolidsStep& step) {
     free_ = !step.impulse.empty();
     duration_ = step.duration;
     received_.assign(n, {});
+    clipped_ = 0;
     on_liquid_ = on_solids_ = {};
     sizes_ = 0;
 }

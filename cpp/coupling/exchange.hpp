@@ -57,7 +57,7 @@ public:
 
     /// Impulse on each solid in the last step of the liquid [N s].
     [[nodiscard]] std::span<const Vec3> impulse() const noexcept { return received_; }
-    /// Void fractions of liquid points raised to the floor in that step.
+    /// Void fractions of liquid points raised to the floor in that step, over its substeps.
     [[nodiscard]] std::size_t clipped() const noexcept { return clipped_; }
     /// Impulse on the liquid and on the solids together, over the sum of the sizes of those on the
     /// solids [-].

@@ -148,6 +148,7 @@ private:
     void step_with_solids(Real dt, Loading& loading, Real elapsed, Real share,
                           AdvanceReport& report);
     void find_rates();
+    [[nodiscard]] Real stiffness(Real dt) const;
     [[nodiscard]] Real correct_with_solids(Real dt);
     [[nodiscard]] Real settle_with_solids(Real dt, std::span<const Vec3> owed);
     [[nodiscard]] Real mixture_velocity() const;

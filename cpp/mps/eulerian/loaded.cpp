@@ -213,16 +213,32 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
     on.velocity.assign(interior_velocity_.begin(), interior_velocity_.end());
     (void)interior_velocity();
     const std::span<const Vec3> owed = loading.owed(interior_velocity_);
-    on.gradient += correct_with_solids(dt) / dt;
+    const Real held = correct_with_solids(dt) / dt;
     const Real exchanged = settle_with_solids(dt, owed);
+    const Real applied = on.gradient + held;
+    on.gradient += stiffness(dt) * held;
 
     const Real after = interior_momentum();
-    gradient_ = density_ * on.gradient;
+    gradient_ = density_ * applied;
+    pressure_scale_ = density_ / dt;
     report.mean_gradient += share * gradient_;
     report.friction += share * density_ * taken;
     report.convection_error += share * density_ * misplaced / dt;
     report.unexplained +=
-        share * density_ * ((after - carried_to) / dt - on.gradient + taken - exchanged);
+        share * density_ * ((after - carried_to) / dt - applied + taken - exchanged);
+}
+
+/// How much more gradient than in clear liquid it takes to change the flux in a step [-]: drag beside
+/// drag in a section, and section after section. Held so, the gradient is found in a step or two.
+Real Liquid::stiffness(Real dt) const {
+    Real sum = 0;
+    for (std::size_t k = 0; k < stations(); ++k) {
+        Real open = 0;
+        for (std::size_t i = 0; i < section_.interior_count(); ++i)
+            open += section_.area(i) / (1 + dt * loaded_->beta[i][k] / loaded_->eps[i][k]);
+        sum += interior_area_ / open;
+    }
+    return sum / static_cast<Real>(stations());
 }
 
 /// du/dt of the inner nodes into star_: convection stands there already.
