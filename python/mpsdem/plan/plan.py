@@ -338,7 +338,7 @@ def _coupling_stages(case: Case, turns: int) -> Iterator[Planned]:
     if is_two_way(case):
         reason = (
             "the velocity of the liquid at a solid, averaged over "
-            f"{smoothing_radius(case):g} m as the exchange is, once in {turns} turns"
+            f"{smoothing_radius(case):g} m as the exchange is, {_once_in(turns)}"
         )
     else:
         flow = "parabola" if pipe_profile(case).laminar else "turbulent profile"
@@ -357,6 +357,10 @@ def _coupling_stages(case: Case, turns: int) -> Iterator[Planned]:
     yield Planned(name="DragForce", reason=reason)
 
 
+def _once_in(turns: int) -> str:
+    return "every turn" if turns == 1 else f"once in {turns} turns"
+
+
 def _exchange_stage(case: Case, turns: int) -> Planned:
     asked = case.fidelity.coupling == "two-way"
     why = (
@@ -364,7 +368,7 @@ def _exchange_stage(case: Case, turns: int) -> Planned:
         if asked
         else f"as the solids fill {case.solids_fraction:.2g} of the bore, above {DILUTE:g}"
     )
-    reason = f"the liquid feels the solids, {why}: it gets what it gave them, once in {turns} turns"
+    reason = f"the liquid feels the solids, {why}: it gets what it gave them, {_once_in(turns)}"
     return Planned(name="ExchangeMomentum", reason=reason)
 
 

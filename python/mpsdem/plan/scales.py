@@ -313,7 +313,9 @@ def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
 
 def stirring_speed(case: Case) -> float:
     """Speed at which solids stir a liquid that feels them [m/s]; 0 where none do."""
-    return terminal_velocity(case) if is_two_way(case) else 0.0
+    if not is_two_way(case) or solids_of(case).held:
+        return 0.0
+    return terminal_velocity(case)
 
 
 def _stirred(case: Case) -> bool:
