@@ -338,7 +338,7 @@ class Exchange:
     @property
     def clipped(self) -> int:
         """
-        Void fractions of the liquid raised to the floor, last substep.
+        Void fractions of the liquid raised to the floor in the last advance.
         """
     @property
     def impulse(self) -> numpy.typing.NDArray[numpy.float64]:
