@@ -225,13 +225,13 @@ def test_a_bed_that_is_held_costs_the_drag_on_it(water, stiffness, steps):
         report = go(exchange, liquid, solids, step)
     drag = exchange.impulse.sum(axis=0) / (step * BORE)
     assert report.mean_gradient == pytest.approx(drag[0] + report.friction, rel=5e-3)
-    through = solids.drag.sum() / BORE * exchange.liquid_velocity[:, 0].mean()
+    through = solids.drag @ exchange.liquid_velocity[:, 0] / BORE
     assert drag[0] == pytest.approx(through, rel=1e-2)
     # where solids lie thick there is less of it
     assert 0.5 < exchange.liquid_velocity[:, 0].mean() < 0.5 / (1 - fraction)
     assert liquid.core.bulk_velocity == pytest.approx(0.5, abs=1e-9)
     if isinstance(liquid, Particles):
-        assert liquid.core.density_scatter < 0.05
+        assert liquid.core.density_scatter < 0.06
 
 
 @EVERY_LIQUID
