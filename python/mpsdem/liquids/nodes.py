@@ -24,6 +24,7 @@ class NodeTally:
     impulse: float = 0.0  # [Pa s/m] of the pressure gradient
     friction: float = 0.0  # [Pa s/m] taken up by the walls
     unexplained: float = 0.0  # [Pa s/m] what convection and pressure did along the pipe
+    convection_error: float = 0.0  # [Pa s/m] that convection between solids lost, given back
     substeps: int = 0
     divergence: float = 0.0  # [-] largest
 
@@ -67,6 +68,7 @@ class NodeLiquid:
         tally.impulse += report.mean_gradient * dt
         tally.friction += report.friction * dt
         tally.unexplained += report.unexplained * dt
+        tally.convection_error += report.convection_error * dt
         tally.substeps += report.substeps
         tally.divergence = max(tally.divergence, report.divergence)
         self.sound = report.sound
@@ -137,6 +139,7 @@ class NodeLiquid:
             "pressure_gradient": gradient,
             "pressure_gradient_friction": tally.friction / time,
             "liquid_unexplained": tally.unexplained / time,
+            "convection_error": tally.convection_error / time,
             "pressure_noise": nodes.pressure_noise,
             "liquid_kinetic_energy": nodes.kinetic_energy,
             "divergence": tally.divergence,

@@ -38,6 +38,7 @@ class Tally:
     impulse: float = 0.0  # [Pa s/m] of the pressure gradient
     friction: float = 0.0  # [Pa s/m] taken up by walls and viscosity
     unexplained: float = 0.0  # [Pa s/m] what the solved pressure did along the pipe
+    convection_error: float = 0.0  # [Pa s/m] that convection between solids lost, given back
     substeps: int = 0
     iterations: int = 0
     residual: float = 0.0
@@ -109,6 +110,7 @@ class ParticleLiquid:
         tally.impulse += report.mean_gradient * dt
         tally.friction += report.friction * dt
         tally.unexplained += report.unexplained * dt
+        tally.convection_error += report.convection_error * dt
         tally.substeps += report.substeps
         tally.iterations += report.iterations
         tally.residual = max(tally.residual, report.residual)
@@ -180,6 +182,7 @@ class ParticleLiquid:
             "pressure_gradient": gradient,
             "pressure_gradient_friction": tally.friction / time,
             "liquid_unexplained": tally.unexplained / time,
+            "convection_error": tally.convection_error / time,
             "pressure_iterations": tally.iterations / max(1, tally.substeps),
             "pressure_residual": tally.residual,
             "density_scatter": particles.density_scatter,

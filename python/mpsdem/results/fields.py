@@ -96,6 +96,11 @@ DIAGNOSTICS = _table(
         "What convection and pressure did to the liquid's momentum",
     ),
     (
+        "convection_error",
+        "Pa/m",
+        "Axial momentum of the liquid that its convection between solids lost, and was given back",
+    ),
+    (
         "exchange_error",
         "1",
         "Largest relative difference of what both gave each other",

@@ -219,6 +219,8 @@ def _of_both(plan: Plan, results: Results, values: dict[str, Any]) -> dict[str, 
             clipped: _sum(results, clipped),
             "exchange_error": float(results.diagnostics["exchange_error"].max()),
             "mass_error": volume_error,
+            # Pa/m that convection between solids lost of the liquid's momentum, and was given back
+            "convection_error": _mean(results, "convection_error"),
         }
         if plan.liquid_model == "lagrangian":
             of_both["mass_error"] = max(volume_error, abs(values["mass_error"]))
