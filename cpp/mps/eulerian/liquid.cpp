@@ -59,10 +59,10 @@ linear::CrossSectionSolver solver_of(const Section& section, const Stencil<2>& g
 Liquid::Liquid(const Section& section, Real pipe_length, std::span<const Vec3> velocity,
                Real density, Real kinematic_viscosity, Real roughness, Flow flow,
                const Drive& drive, const Numerics& numerics)
-    : section_(section),
-      pipe_length_(pipe_length), axial_{pipe_length / static_cast<Real>(numerics.stations)},
-      chunks_(numerics.stations), density_(density), viscosity_(kinematic_viscosity), flow_(flow),
-      drive_(drive), numerics_(numerics), wall_law_(kinematic_viscosity, roughness, section),
+    : section_(section), pipe_length_(pipe_length),
+      axial_{pipe_length / static_cast<Real>(numerics.stations)}, chunks_(numerics.stations),
+      density_(density), viscosity_(kinematic_viscosity), flow_(flow), drive_(drive),
+      numerics_(numerics), wall_law_(kinematic_viscosity, roughness, section),
       mixing_length_(section.pipe_radius()), gradient_stencil_(gradient_stencil(section)),
       laplacian_stencil_(laplacian_stencil(section)),
       upwind_stencil_(numerics.convection == Convection::upwind ? upwind_stencil(section)
@@ -391,7 +391,7 @@ Real Liquid::mean_drag() const {
 
 Real Liquid::residual_divergence() {
     if (loaded_) {
-        find_volume_flux(star_);
+        find_volume_flux(*loaded_, star_);
         find_divergence(star_, strain_);
     } else {
         find_divergence(u_, strain_);

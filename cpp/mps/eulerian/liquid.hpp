@@ -143,16 +143,16 @@ private:
     void project(const Stage& stage, AdvanceReport& report);
     [[nodiscard]] Real correct(Real kick);
     void meet_wall(std::size_t begin, std::size_t end);
-    void take_load(const Load& load);
-    [[nodiscard]] Real interior_momentum() const;
+    void take_load(const Load& load, Loaded& on) const;
+    [[nodiscard]] Real interior_momentum(const Loaded& on) const;
     void step_with_solids(Real dt, Loading& loading, Real elapsed, Real share,
                           AdvanceReport& report);
-    void find_rates();
-    [[nodiscard]] Real stiffness(Real dt) const;
-    [[nodiscard]] Real correct_with_solids(Real dt);
-    [[nodiscard]] Real settle_with_solids(Real dt, std::span<const Vec3> owed);
-    [[nodiscard]] Real mixture_velocity() const;
-    void find_volume_flux(VectorField& flux) const;
+    void find_rates(Loaded& on);
+    [[nodiscard]] Real stiffness(const Loaded& on, Real dt) const;
+    [[nodiscard]] Real correct_with_solids(Loaded& on, Real dt);
+    [[nodiscard]] Real settle_with_solids(Loaded& on, Real dt, std::span<const Vec3> owed);
+    [[nodiscard]] Real mixture_velocity(const Loaded& on) const;
+    void find_volume_flux(const Loaded& on, VectorField& flux) const;
     void find_divergence(const VectorField& field, Field& result);
     [[nodiscard]] Real residual_divergence();
     [[nodiscard]] Real mean_drag() const;

@@ -71,7 +71,7 @@ Real Liquid::flux(const Field& velocity, std::size_t nodes) const {
 }
 
 Real Liquid::bulk_velocity() const {
-    return mixture_velocity();
+    return loaded_ ? mixture_velocity(*loaded_) : flux(u_.x, section_.size()) / bore_area_;
 }
 
 Real Liquid::mean_interior_velocity() const {

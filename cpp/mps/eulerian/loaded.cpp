@@ -93,8 +93,7 @@ std::span<const Vec3> Liquid::interior_velocity() {
 }
 
 /// Put the load on nodes, and on the walls what it is inward of them.
-void Liquid::take_load(const Load& load) {
-    Loaded& on = *loaded_;
+void Liquid::take_load(const Load& load, Loaded& on) const {
     const std::size_t inner = section_.interior_count(), n = stations();
     for (std::size_t i = 0; i < inner; ++i) {
         for (std::size_t k = 0; k < n; ++k) {
@@ -124,11 +123,11 @@ void Liquid::take_load(const Load& load) {
 }
 
 /// Mean of eps u_x over the inner nodes [m/s].
-Real Liquid::interior_momentum() const {
+Real Liquid::interior_momentum(const Loaded& on) const {
     Real sum = 0;
     for (std::size_t i = 0; i < section_.interior_count(); ++i) {
         Real row = 0;
-        for (std::size_t k = 0; k < stations(); ++k) row += loaded_->eps[i][k] * u_.x[i][k];
+        for (std::size_t k = 0; k < stations(); ++k) row += on.eps[i][k] * u_.x[i][k];
         sum += section_.area(i) * row;
     }
     return sum / (interior_area_ * static_cast<Real>(stations()));
@@ -138,17 +137,16 @@ Real Liquid::interior_momentum() const {
 void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real share,
                               AdvanceReport& report) {
     const bool first = !loaded_;
-    if (first) loaded_.emplace(section_.size(), stations());
-    Loaded& on = *loaded_;
-    Real carried_to = interior_momentum();
-    take_load(loading.before(points(), elapsed, dt));
-    const Real before = interior_momentum();
+    Loaded& on = loaded_ ? *loaded_ : loaded_.emplace(section_.size(), stations());
+    Real carried_to = interior_momentum(on);
+    take_load(loading.before(points(), elapsed, dt), on);
+    const Real before = interior_momentum(on);
     if (first) carried_to = before;
     (void)interior_velocity();
     const std::size_t inner = section_.interior_count();
 
     // du/dt by convection and viscosity; the walls' drag on the layer next to them.
-    find_rates();
+    find_rates(on);
     const Real friction = -(flow_ == Flow::laminar ? mean(viscous_force_) / interior_area_
                                                    : mean(on.wall_drag) / bore_area_);
     // Adams and Bashforth's second order, for steps that may differ; Euler's for the first.
@@ -213,12 +211,12 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
     on.velocity.assign(interior_velocity_.begin(), interior_velocity_.end());
     (void)interior_velocity();
     const std::span<const Vec3> owed = loading.owed(interior_velocity_);
-    const Real held = correct_with_solids(dt) / dt;
-    const Real exchanged = settle_with_solids(dt, owed);
+    const Real held = correct_with_solids(on, dt) / dt;
+    const Real exchanged = settle_with_solids(on, dt, owed);
     const Real applied = on.gradient + held;
-    on.gradient += stiffness(dt) * held;
+    on.gradient += stiffness(on, dt) * held;
 
-    const Real after = interior_momentum();
+    const Real after = interior_momentum(on);
     gradient_ = density_ * applied;
     pressure_scale_ = density_ / dt;
     report.mean_gradient += share * gradient_;
@@ -228,22 +226,22 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
         share * density_ * ((after - carried_to) / dt - applied + taken - exchanged);
 }
 
-/// How much more gradient than in clear liquid it takes to change the flux in a step [-]: drag beside
-/// drag in a section, and section after section. Held so, the gradient is found in a step or two.
-Real Liquid::stiffness(Real dt) const {
+/// How much more gradient than in clear liquid it takes to change the flux in a step [-]: drag
+/// beside drag in a section, and section after section. Held so, the gradient is found in a step or
+/// two.
+Real Liquid::stiffness(const Loaded& on, Real dt) const {
     Real sum = 0;
     for (std::size_t k = 0; k < stations(); ++k) {
         Real open = 0;
         for (std::size_t i = 0; i < section_.interior_count(); ++i)
-            open += section_.area(i) / (1 + dt * loaded_->beta[i][k] / loaded_->eps[i][k]);
+            open += section_.area(i) / (1 + dt * on.beta[i][k] / on.eps[i][k]);
         sum += interior_area_ / open;
     }
     return sum / static_cast<Real>(stations());
 }
 
 /// du/dt of the inner nodes into star_: convection stands there already.
-void Liquid::find_rates() {
-    Loaded& on = *loaded_;
+void Liquid::find_rates(Loaded& on) {
     const std::size_t inner = section_.interior_count();
     on.wall_drag.assign(stations(), 0);
     convection_.assign(stations(), 0);
@@ -294,8 +292,7 @@ void Liquid::find_rates() {
 
 /// From the volume flux in star_ and its pressure to the liquid's velocity, the walls' too. Returns
 /// what of the velocity was added along the pipe to hold the flux, or by the given gradient [m/s].
-Real Liquid::correct_with_solids(Real dt) {
-    Loaded& on = *loaded_;
+Real Liquid::correct_with_solids(Loaded& on, Real dt) {
     const std::size_t inner = section_.interior_count();
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
@@ -321,7 +318,7 @@ Real Liquid::correct_with_solids(Real dt) {
     if (drive_.pressure_gradient)
         held = dt * *drive_.pressure_gradient / density_ - known;
     else
-        held = (drive_.bulk_velocity - mixture_velocity()) * bore_area_ / interior_area_;
+        held = (drive_.bulk_velocity - mixture_velocity(on)) * bore_area_ / interior_area_;
     for (std::size_t i = 0; i < inner; ++i)
         for (std::size_t k = 0; k < stations(); ++k) u_.x[i][k] += held / on.eps[i][k];
     return held;
@@ -329,8 +326,7 @@ Real Liquid::correct_with_solids(Real dt) {
 
 /// Pay what the solids still owe, and note the acceleration that was not theirs. Returns what the
 /// solids gave to the mean of eps u_x over the inner nodes [m/s2].
-Real Liquid::settle_with_solids(Real dt, std::span<const Vec3> owed) {
-    Loaded& on = *loaded_;
+Real Liquid::settle_with_solids(Loaded& on, Real dt, std::span<const Vec3> owed) {
     on.acceleration.resize(owed.size());
     Real given = 0;
     for (std::size_t i = 0; i < section_.interior_count(); ++i) {
@@ -352,8 +348,7 @@ Real Liquid::settle_with_solids(Real dt, std::span<const Vec3> owed) {
 }
 
 /// eps u + s.
-void Liquid::find_volume_flux(VectorField& result) const {
-    const Loaded& on = *loaded_;
+void Liquid::find_volume_flux(const Loaded& on, VectorField& result) const {
     for (std::size_t i = 0; i < section_.size(); ++i) {
         for (std::size_t k = 0; k < stations(); ++k)
             set(result, i, k, on.eps[i][k] * at(u_, i, k) + at(on.flux, i, k));
@@ -363,18 +358,18 @@ void Liquid::find_volume_flux(VectorField& result) const {
 
 std::vector<Real> Liquid::void_fraction() const {
     std::vector<Real> out(size(), 1);
-    for (std::size_t i = 0; i < (loaded_ ? section_.size() : 0); ++i)
+    if (!loaded_) return out;
+    for (std::size_t i = 0; i < section_.size(); ++i)
         std::copy_n(loaded_->eps[i], stations(), out.data() + i * stations());
     return out;
 }
 
-Real Liquid::mixture_velocity() const {
-    if (!loaded_) return flux(u_.x, section_.size()) / bore_area_;
+Real Liquid::mixture_velocity(const Loaded& on) const {
     Real sum = 0;
     for (std::size_t i = 0; i < section_.size(); ++i) {
         Real row = 0;
         for (std::size_t k = 0; k < stations(); ++k)
-            row += loaded_->eps[i][k] * u_.x[i][k] + loaded_->flux.x[i][k];
+            row += on.eps[i][k] * u_.x[i][k] + on.flux.x[i][k];
         sum += section_.area(i) * row;
     }
     return sum / (bore_area_ * static_cast<Real>(stations()));
