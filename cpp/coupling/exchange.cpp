@@ -21,7 +21,11 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
     volume_.resize(position.size());
     for (std::size_t p = 0; p < position.size(); ++p)
         volume_[p] = 4. / 3 * std::numbers::pi * radius[p] * radius[p] * radius[p];
+    points_ = points;
     footprints_.find(points, position);
+    at_point_.assign(points.position.size(), {});
+    for (std::size_t p = 0; p < position.size(); ++p)
+        footprints_.each(p, [&](Index i, Real w) { at_point_[i].volume += w * volume_[p]; });
     find_void_fraction(points);
     velocity_.resize(position.size());
     acceleration_.assign(position.size(), {});
@@ -31,31 +35,31 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
     }
 }
 
+/// Void fractions from the volume of solids at each point [m3].
 void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
-    const std::size_t n = points.position.size();
-    void_fraction_.assign(n, 0);
-    for (std::size_t p = 0; p < volume_.size(); ++p)
-        footprints_.spread(p, volume_[p], void_fraction_);
+    void_fraction_.resize(points.position.size());
     Real bore = 0, liquid = 0, solids = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        Real& eps = void_fraction_[i];
-        eps = 1 - eps;
+    for (std::size_t i = 0; i < void_fraction_.size(); ++i) {
+        Real eps = 1 - at_point_[i].volume / points.volume[i];
         if (eps < floor) {
             eps = floor;
             ++clipped_;
         }
+        void_fraction_[i] = eps;
         bore += points.volume[i];
         liquid += points.volume[i] * eps;
     }
     for (const Real volume : volume_) solids += volume;
-    volume_error_ = liquid / (bore - solids) - 1;
+    liquid_volume_error_ = liquid / (bore - solids) - 1;
 }
 
 std::vector<Real> Exchange::relaxation(std::span<const Real> drag) const {
     require(drag.size() == volume_.size(), "Exchange: drag must have one row per solid");
     std::vector<Real> rate(void_fraction_.size(), 0), result(drag.size());
-    for (std::size_t p = 0; p < drag.size(); ++p) footprints_.spread(p, drag[p], rate);
-    for (std::size_t i = 0; i < rate.size(); ++i) rate[i] /= density_ * void_fraction_[i];
+    for (std::size_t p = 0; p < drag.size(); ++p)
+        footprints_.each(p, [&](Index i, Real w) { rate[i] += w * drag[p]; });
+    for (std::size_t i = 0; i < rate.size(); ++i)
+        rate[i] /= density_ * points_.volume[i] * void_fraction_[i];
     for (std::size_t p = 0; p < drag.size(); ++p) result[p] = footprints_.sample<Real>(p, rate);
     return result;
 }
@@ -91,15 +95,27 @@ mps::Load Exchange::before(const mps::LiquidPoints& points, Real elapsed, Real d
         position_[p] = x;
     }
     footprints_.find(points, position_);
-    find_void_fraction(points);
     const std::size_t n = points.position.size();
-    flux_.assign(n, {});
-    beta_.assign(n, 0);
-    drag_of_solids_.assign(n, {});
+    at_point_.assign(n, {});
     for (std::size_t p = 0; p < start_.size(); ++p) {
-        footprints_.spread(p, volume_[p] * mean_velocity_[p], flux_);
-        footprints_.spread(p, drag_[p], beta_);
-        footprints_.spread(p, drag_[p] * mean_velocity_[p], drag_of_solids_);
+        const Vec3 &v = mean_velocity_[p], flux = volume_[p] * v, force = drag_[p] * v;
+        footprints_.each(p, [&](Index i, Real w) {
+            AtPoint& at = at_point_[i];
+            at.volume += w * volume_[p];
+            at.drag += w * drag_[p];
+            at.flux += w * flux;
+            at.force += w * force;
+        });
+    }
+    find_void_fraction(points);
+    flux_.resize(n);
+    beta_.resize(n);
+    drag_of_solids_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const Real per_volume = 1 / points.volume[i];
+        beta_[i] = per_volume * at_point_[i].drag;
+        flux_[i] = per_volume * at_point_[i].flux;
+        drag_of_solids_[i] = per_volume * at_point_[i].force;
     }
     return {void_fraction_, flux_, beta_, drag_of_solids_};
 }
@@ -110,12 +126,16 @@ std::span<const Vec3> Exchange::owed(std::span<const Vec3> velocity) {
         const Vec3 by_drag =
             (drag_[p] * step_) * (footprints_.sample(p, velocity) - mean_velocity_[p]);
         const Vec3 got = free_ ? (step_ / duration_) * impulse_[p] : by_drag;
-        if (free_) footprints_.spread(p, by_drag - got, owed_);
+        if (free_) {
+            const Vec3 rest = by_drag - got;
+            footprints_.each(p, [&](Index i, Real w) { owed_[i] += w * rest; });
+        }
         received_[p] += got;
         on_solids_ += got;
         sizes_ += norm(got);
     }
     for (std::size_t i = 0; i < velocity.size(); ++i) {
+        owed_[i] = (1 / points_.volume[i]) * owed_[i];
         on_liquid_ +=
             points_.volume[i] * (step_ * (drag_of_solids_[i] - beta_[i] * velocity[i]) + owed_[i]);
     }

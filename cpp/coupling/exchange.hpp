@@ -63,9 +63,17 @@ public:
     /// solids [-].
     [[nodiscard]] Real mismatch() const noexcept;
     /// Volume of the liquid by its void fractions, over bore less solids, less 1 [-].
-    [[nodiscard]] Real liquid_volume_error() const noexcept { return volume_error_; }
+    [[nodiscard]] Real liquid_volume_error() const noexcept { return liquid_volume_error_; }
 
 private:
+    /// What solids bring to a point of the liquid, in a line of the cache.
+    struct alignas(64) AtPoint {
+        Real volume = 0; // [m3]
+        Real drag = 0;   // [kg/s]
+        Vec3 flux;       // [m4/s]
+        Vec3 force;      // [N]
+    };
+
     void find_void_fraction(const mps::LiquidPoints& points);
 
     Footprints footprints_;
@@ -81,11 +89,12 @@ private:
 
     // Of the liquid's points.
     mps::LiquidPoints points_{};
+    std::vector<AtPoint> at_point_;
     std::vector<Real> void_fraction_, beta_;
     std::vector<Vec3> flux_, drag_of_solids_, owed_;
     Real step_ = 0; // [s] of the substep under way
     std::size_t clipped_ = 0;
-    Real volume_error_ = 0;
+    Real liquid_volume_error_ = 0;
     Vec3 on_liquid_, on_solids_; // [N s]
     Real sizes_ = 0;             // [N s]
 };

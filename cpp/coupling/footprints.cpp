@@ -13,8 +13,8 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
     if (!grid_) grid_.emplace(reach, period);
     const neighbors::Cells cells(points.position, reach, period, 1);
     grid_->sort(points.position, cells, order_, 1);
-    per_volume_.resize(points.volume.size());
-    for (std::size_t i = 0; i < points.volume.size(); ++i) per_volume_[i] = 1 / points.volume[i];
+    sorted_.resize(order_.size());
+    for (std::size_t k = 0; k < order_.size(); ++k) sorted_[k] = points.position[order_[k]];
 
     first_.assign(1, 0);
     point_.clear();
@@ -24,10 +24,10 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
         grid_->around(cells.of(x), [&](Index begin, Index end, int image) {
             const Vec3 seen{x.x + image * period, x.y, x.z};
             for (Index k = begin; k < end; ++k) {
-                const Index i = order_[k];
-                const Vec3 r = points.position[i] - seen;
+                const Vec3 r = sorted_[k] - seen;
                 const Real square = dot(r, r);
                 if (square >= reach * reach) continue;
+                const Index i = order_[k];
                 point_.push_back(i);
                 weight_.push_back(points.volume[i] * kernel_(std::sqrt(square)));
                 total += weight_.back();

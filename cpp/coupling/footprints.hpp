@@ -39,20 +39,14 @@ public:
         return sum;
     }
 
-    /// f_i += w_ip / V_i value: a density from what solid p has.
-    template <class T>
-    void spread(std::size_t p, const T& value, std::vector<T>& density) const {
-        each(p, [&](Index i, Real w) { density[i] += (w * per_volume_[i]) * value; });
-    }
-
 private:
     SmoothingKernel kernel_;
     std::optional<neighbors::CellGrid> grid_;
     std::vector<Index> order_;
     std::vector<std::size_t> first_ = {0};
     std::vector<Index> point_;
-    std::vector<Real> weight_;     // [-]
-    std::vector<Real> per_volume_; // [1/m3] of each point
+    std::vector<Real> weight_; // [-]
+    std::vector<Vec3> sorted_; // [m] points by cells; memory of a search
 };
 
 } // namespace mpsdem::coupling
