@@ -103,10 +103,12 @@ def solids_velocity_over_height(results: Results, times: Sequence[float] | None 
     with style():
         figure = Figure(figsize=(9.6 if both else 6.4, 4.4), layout="constrained")
         diagrams = figure.subplots(1, 2 if both else 1, sharex=True, sharey=True, squeeze=False)[0]
-        of = " of the solids" if both else ""
-        diagrams[0].set_title(heading(results, f"velocity over height{of}"))
         if both:
-            diagrams[1].set_title("of the liquid")
+            figure.suptitle(heading(results, "velocity over height"), x=0.01, ha="left")
+            diagrams[0].set_title("solids")
+            diagrams[1].set_title("liquid")
+        else:
+            diagrams[0].set_title(heading(results, "velocity over height"))
         if layered:
             liquid = results.liquid
             _over_height(

@@ -58,7 +58,7 @@ def save_figures(
     for name, draw in _drawings(results, times):
         path = folder / f"{name}.png"
         with writing(path):
-            draw().savefig(path, dpi=DOTS_PER_INCH)
+            draw().savefig(path, dpi=DOTS_PER_INCH, bbox_inches="tight")
         paths.append(path)
     return paths
 
