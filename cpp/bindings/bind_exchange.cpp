@@ -26,7 +26,7 @@ void bind_exchange(py::module_ m) {
                          R"(Two-way exchange between solids and a liquid, in Model B.
 
 A step: `begin` looks at the liquid around the solids; these go on, in substeps in which the liquid
-at each of them relaxes with `relaxation`; `give` takes what they did, and `advance` moves the
+at each of them responds as `response` says; `give` takes what they did, and `advance` moves the
 liquid with it. The impulse on the solids is the liquid's loss to round-off.
 
 Parameters
@@ -75,27 +75,28 @@ ValueError
         .def_property_readonly(
             "liquid_velocity", [](const Exchange& e) { return array(copied(e.liquid_velocity())); },
             "(n, 3) of the liquid at the solids, when the step began [m/s].")
-        .def_property_readonly(
-            "liquid_acceleration",
-            [](const Exchange& e) { return array(copied(e.liquid_acceleration())); },
-            "(n, 3) of the same, over the step before, drag apart [m/s2].")
         .def(
-            "relaxation",
-            [](const Exchange& e, const Array<Real>& drag) {
-                return array(e.relaxation(values(drag, "drag")));
+            "response",
+            [](const Exchange& e, const Array<Real>& drag, const Array<Real>& velocity) {
+                const auto r = e.response(values(drag, "drag"), vectors(velocity, "velocity"));
+                return std::pair(array(r.acceleration), array(r.relaxation));
             },
-            "drag"_a,
-            R"(Rate at which the solids near each solid bring the liquid to their own velocity.
+            py::kw_only(), "drag"_a, "velocity"_a,
+            R"(How the liquid at each solid is going to change: du/dt = a - L (u - v).
 
 Parameters
 ----------
 drag : (n,) float64 ndarray
-    Drag over slip [kg/s].
+    Drag over slip now [kg/s].
+velocity : (n, 3) float64 ndarray
+    Of the solids now [m/s].
 
 Returns
 -------
-(n,) float64 ndarray
-    [1/s].
+acceleration : (n, 3) float64 ndarray
+    a [m/s2].
+relaxation : (n,) float64 ndarray
+    L [1/s].
 )")
         .def(
             "give",
@@ -134,8 +135,9 @@ duration : float
         .def_property_readonly(
             "impulse", [](const Exchange& e) { return array(copied(e.impulse())); },
             "(n, 3) on the solids, over the last advance [N s].")
-        .def_property_readonly("clipped", &Exchange::clipped,
-                               "Void fractions of the liquid raised to the floor in the last advance.")
+        .def_property_readonly(
+            "clipped", &Exchange::clipped,
+            "Void fractions of the liquid raised to the floor in the last advance.")
         .def_property_readonly("mismatch", &Exchange::mismatch,
                                "Impulse on liquid and solids together, over the sum of the sizes "
                                "of those on the solids [-].")

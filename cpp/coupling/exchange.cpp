@@ -22,6 +22,7 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
     for (std::size_t p = 0; p < position.size(); ++p)
         volume_[p] = 4. / 3 * std::numbers::pi * radius[p] * radius[p] * radius[p];
     points_ = points;
+    field_ = velocity;
     footprints_.find(points, position);
     at_point_.assign(points.position.size(), {});
     for (std::size_t p = 0; p < position.size(); ++p)
@@ -53,14 +54,34 @@ void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
     liquid_volume_error_ = liquid / (bore - solids) - 1;
 }
 
-std::vector<Real> Exchange::relaxation(std::span<const Real> drag) const {
-    require(drag.size() == volume_.size(), "Exchange: drag must have one row per solid");
-    std::vector<Real> rate(void_fraction_.size(), 0), result(drag.size());
-    for (std::size_t p = 0; p < drag.size(); ++p)
-        footprints_.each(p, [&](Index i, Real w) { rate[i] += w * drag[p]; });
-    for (std::size_t i = 0; i < rate.size(); ++i)
-        rate[i] /= density_ * points_.volume[i] * void_fraction_[i];
-    for (std::size_t p = 0; p < drag.size(); ++p) result[p] = footprints_.sample<Real>(p, rate);
+Response Exchange::response(std::span<const Real> drag, std::span<const Vec3> velocity) const {
+    require(drag.size() == volume_.size() && velocity.size() == volume_.size(),
+            "Exchange: drag and velocity must have one row per solid");
+    std::vector<AtPoint> at(void_fraction_.size());
+    for (std::size_t p = 0; p < drag.size(); ++p) {
+        const Vec3 force = drag[p] * velocity[p];
+        footprints_.each(p, [&](Index i, Real w) {
+            at[i].drag += w * drag[p];
+            at[i].force += w * force;
+        });
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) { // to rates [1/s] and accelerations [m/s2]
+        const Real inertia = density_ * points_.volume[i] * void_fraction_[i];
+        at[i].drag /= inertia;
+        at[i].force = (1 / inertia) * at[i].force - at[i].drag * field_[i];
+    }
+    Response result;
+    for (std::size_t p = 0; p < drag.size(); ++p) {
+        Real rate = 0;
+        Vec3 by_drag;
+        footprints_.each(p, [&](Index i, Real w) {
+            rate += w * at[i].drag;
+            by_drag += w * at[i].force;
+        });
+        result.relaxation.push_back(rate);
+        result.acceleration.push_back(acceleration_[p] + by_drag +
+                                      rate * (velocity_[p] - velocity[p]));
+    }
     return result;
 }
 

@@ -16,6 +16,12 @@ struct SolidsStep {
     Real duration;                       // [s]
 };
 
+/// How the liquid at each solid changes in substeps: du/dt = acceleration - relaxation (u - v).
+struct Response {
+    std::vector<Vec3> acceleration; // [m/s2]
+    std::vector<Real> relaxation;   // [1/s]
+};
+
 /// Two-way exchange between solids and a liquid, in Model B: the solids feel drag and the buoyancy
 /// of liquid at rest, and all else is the liquid's pressure.
 ///
@@ -24,12 +30,15 @@ struct SolidsStep {
 ///   beta_i, D_i = sum_p (K_p, K_p v_p) w_ip / V_i    drag, implicit in the liquid's step
 ///   J_p   = K_p dt sum_i w_ip (u_i - v_p)            impulse by it
 ///
-/// The solids have meanwhile got I_p, from substeps in which the liquid relaxes with
+/// The solids have meanwhile got I_p, from substeps in which the liquid responds,
 ///
-///   L_p = sum_i w_ip beta_i / (rho eps_i)
+///   du_p/dt = b_p + L_p (u_p^0 - v_p^0) - sum_i w_ip (beta_i u_i^0 - D_i) / (rho eps_i)
+///             - L_p (u_p - v_p),      L_p = sum_i w_ip beta_i / (rho eps_i)
 ///
-/// The difference is spread with the same weights after the liquid's step, so that the exchange is
-/// equal and opposite to round-off, and small where the substeps foresaw the liquid well.
+/// b_p is what all but drag did to it in the step before: at first the liquid changes as its points
+/// do, which feel other solids too, and then as its slip from this solid changes. The difference is
+/// spread with the same weights after the liquid's step, so that the exchange is equal and opposite
+/// to round-off, and small where the substeps foresaw the liquid well.
 ///
 /// Source: Zhou, Kuang, Chu & Yu (2010), doi:10.1017/S002211201000306X, set II (Model B).
 class Exchange final : public mps::Loading {
@@ -43,11 +52,10 @@ public:
                std::span<const Vec3> acceleration, std::span<const Vec3> position,
                std::span<const Real> radius);
     [[nodiscard]] std::span<const Vec3> liquid_velocity() const noexcept { return velocity_; }
-    [[nodiscard]] std::span<const Vec3> liquid_acceleration() const noexcept {
-        return acceleration_;
-    }
-    /// L_p [1/s], for K [kg/s] of the solids as they lie at the start of the step.
-    [[nodiscard]] std::vector<Real> relaxation(std::span<const Real> drag) const;
+    /// How the liquid at the solids will change, for K [kg/s] and v of the solids now, as they lie
+    /// at the start of the step.
+    [[nodiscard]] Response response(std::span<const Real> drag,
+                                    std::span<const Vec3> velocity) const;
 
     /// Take what the solids did; the next advance of the liquid hears of it.
     void give(const SolidsStep& step);
@@ -89,6 +97,7 @@ private:
 
     // Of the liquid's points.
     mps::LiquidPoints points_{};
+    std::span<const Vec3> field_; // [m/s] the liquid's velocity at the start
     std::vector<AtPoint> at_point_;
     std::vector<Real> void_fraction_, beta_;
     std::vector<Vec3> flux_, drag_of_solids_, owed_;

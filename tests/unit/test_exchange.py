@@ -172,8 +172,14 @@ def test_solids_sample_and_load_the_liquid_with_the_same_weights(water):
 
     exchange.begin(liquid.core, position=solids.position, radius=solids.radius)
     np.testing.assert_allclose(exchange.liquid_velocity, w @ liquid.velocity, atol=1e-12)
-    rate = solids.drag @ w / (DENSITY * liquid.volume * eps)
-    np.testing.assert_allclose(exchange.relaxation(solids.drag), w @ rate, rtol=1e-10)
+    inertia = DENSITY * liquid.volume * eps
+    rate = solids.drag @ w / inertia
+    by_drag = (solids.drag[:, None] * solids.velocity).T @ w / inertia - rate * liquid.velocity.T
+    slip = w @ liquid.velocity - solids.velocity
+    acceleration, relaxation = exchange.response(drag=solids.drag, velocity=solids.velocity)
+    np.testing.assert_allclose(relaxation, w @ rate, rtol=1e-10)
+    expected = w @ by_drag.T + (w @ rate)[:, None] * slip  # nothing else has acted yet
+    np.testing.assert_allclose(acceleration, expected, atol=1e-10 * np.abs(expected).max())
 
     go(exchange, liquid, solids, 1e-3)
     np.testing.assert_allclose(liquid.void_fraction, eps, rtol=1e-10)
@@ -307,7 +313,7 @@ def test_what_cannot_be_is_refused(water):
     exchange = new_exchange()
     exchange.begin(liquid.core, position=solids.position, radius=solids.radius)
     with pytest.raises(ValueError, match="one row per solid"):
-        exchange.relaxation(np.ones(2))
+        exchange.response(drag=np.ones(2), velocity=solids.velocity)
     with pytest.raises(ValueError, match="duration must be > 0"):
         exchange.give(
             position=solids.position,

@@ -255,7 +255,7 @@ class Exchange:
     Two-way exchange between solids and a liquid, in Model B.
     
     A step: `begin` looks at the liquid around the solids; these go on, in substeps in which the liquid
-    at each of them relaxes with `relaxation`; `give` takes what they did, and `advance` moves the
+    at each of them responds as `response` says; `give` takes what they did, and `advance` moves the
     liquid with it. The impulse on the solids is the liquid's loss to round-off.
     
     Parameters
@@ -321,19 +321,23 @@ class Exchange:
         duration : float
             [s].
         """
-    def relaxation(self, drag: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    def response(self, *, drag: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        Rate at which the solids near each solid bring the liquid to their own velocity.
+        How the liquid at each solid is going to change: du/dt = a - L (u - v).
         
         Parameters
         ----------
         drag : (n,) float64 ndarray
-            Drag over slip [kg/s].
+            Drag over slip now [kg/s].
+        velocity : (n, 3) float64 ndarray
+            Of the solids now [m/s].
         
         Returns
         -------
-        (n,) float64 ndarray
-            [1/s].
+        acceleration : (n, 3) float64 ndarray
+            a [m/s2].
+        relaxation : (n,) float64 ndarray
+            L [1/s].
         """
     @property
     def clipped(self) -> int:
@@ -344,11 +348,6 @@ class Exchange:
     def impulse(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 3) on the solids, over the last advance [N s].
-        """
-    @property
-    def liquid_acceleration(self) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (n, 3) of the same, over the step before, drag apart [m/s2].
         """
     @property
     def liquid_velocity(self) -> numpy.typing.NDArray[numpy.float64]:

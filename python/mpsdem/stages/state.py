@@ -44,8 +44,8 @@ class State:
         Coupling steps since the start, the one under way included.
     time : float
         Time at the end of that step [s].
-    liquid_velocity, liquid_acceleration : (n, 3) float64 ndarray
-        Liquid at the solids [m/s], and how it changes, drag apart [m/s2].
+    liquid_velocity : (n, 3) float64 ndarray
+        Liquid at the solids [m/s].
     void_fraction : (n,) float64 ndarray
         Share of liquid around the solids [-].
     drag_rate : (n,) float64 ndarray
@@ -85,7 +85,6 @@ class State:
     step: int = 0
     time: float = 0.0
     liquid_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
-    liquid_acceleration: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     void_fraction: FloatArray = field(default_factory=lambda: np.zeros(0))
     drag_rate: FloatArray = field(default_factory=lambda: np.zeros(0))
     begun_at: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))

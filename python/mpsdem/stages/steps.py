@@ -79,7 +79,6 @@ class BeginExchange:
         state.begun_at = state.solids.position
         begin_exchange(state)
         state.liquid_velocity = exchange.liquid_velocity
-        state.liquid_acceleration = exchange.liquid_acceleration
         state.mean_velocity = np.zeros_like(state.begun_at)
         state.mean_drag = np.zeros(len(state.begun_at))
         state.impulse = np.zeros_like(state.begun_at)
@@ -174,12 +173,15 @@ class AdvanceSolids:
                 added_mass=self.added_mass,
             )
         else:
+            acceleration, relaxation = state.exchange.response(
+                drag=solids.mass * state.drag_rate, velocity=solids.velocity
+            )
             solids.set_forcing(
                 acceleration=self.acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
-                liquid_acceleration=state.liquid_acceleration,
-                relaxation=state.exchange.relaxation(solids.mass * state.drag_rate),
+                liquid_acceleration=acceleration,
+                relaxation=relaxation,
                 added_mass=self.added_mass,
             )
 
