@@ -48,7 +48,7 @@ Zhou, Kuang, Chu & Yu (2010) doi:10.1017/S002211201000306X, set II.
                 e.begin(liquid.points(), liquid.liquid_velocity(), liquid.liquid_acceleration(),
                         vectors(position, "position"), values(radius, "radius"));
             },
-            "liquid"_a, py::kw_only(), "position"_a, "radius"_a,
+            py::keep_alive<1, 2>(), "liquid"_a, py::kw_only(), "position"_a, "radius"_a,
             R"(Look at the liquid around the solids at the start of a step.
 
 Parameters
@@ -71,13 +71,14 @@ ValueError
                 e.begin(points, liquid.interior_velocity(), liquid.interior_acceleration(),
                         vectors(position, "position"), values(radius, "radius"));
             },
-            "liquid"_a, py::kw_only(), "position"_a, "radius"_a, "The same for a liquid on nodes.")
+            py::keep_alive<1, 2>(), "liquid"_a, py::kw_only(), "position"_a, "radius"_a,
+            "The same for a liquid on nodes.")
         .def_property_readonly(
             "liquid_velocity", [](const Exchange& e) { return array(copied(e.liquid_velocity())); },
             "(n, 3) of the liquid at the solids, when the step began [m/s].")
         .def(
             "response",
-            [](const Exchange& e, const Array<Real>& drag, const Array<Real>& velocity) {
+            [](Exchange& e, const Array<Real>& drag, const Array<Real>& velocity) {
                 const auto r = e.response(values(drag, "drag"), vectors(velocity, "velocity"));
                 return std::pair(array(r.acceleration), array(r.relaxation));
             },

@@ -2,13 +2,31 @@
 
 #include "core/check.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
 
 namespace mpsdem::coupling {
 
+namespace {
+
+void require_places(std::span<const Vec3> position, Real period) {
+    for (std::size_t p = 0; p < position.size(); ++p) {
+        const Vec3& x = position[p];
+        require(std::isfinite(x.x + x.y + x.z) && (period == 0 || (x.x >= 0 && x.x < period)),
+                "Exchange: position of solid " + std::to_string(p) +
+                    " must be finite, and its x from 0 to less than the period");
+    }
+}
+
+} // namespace
+
 Exchange::Exchange(Real smoothing_radius, Real liquid_density)
     : footprints_(SmoothingKernel{smoothing_radius}), density_(liquid_density) {
-    require(liquid_density > 0, "Exchange: liquid_density must be > 0 kg/m3");
+    require(std::isfinite(smoothing_radius) && smoothing_radius > 0,
+            "Exchange: smoothing_radius must be > 0 m");
+    require(std::isfinite(liquid_density) && liquid_density > 0,
+            "Exchange: liquid_density must be > 0 kg/m3");
 }
 
 void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velocity,
@@ -18,6 +36,8 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
                 (acceleration.empty() || acceleration.size() == velocity.size()),
             "Exchange: the liquid needs a velocity for each of its points");
     require(radius.size() == position.size(), "Exchange: radius must have one row per solid");
+    require_places(position, points.period);
+    given_ = false;
     volume_.resize(position.size());
     for (std::size_t p = 0; p < position.size(); ++p)
         volume_[p] = 4. / 3 * std::numbers::pi * radius[p] * radius[p] * radius[p];
@@ -39,12 +59,13 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
 /// Void fractions from the volume of solids at each point [m3].
 void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
     void_fraction_.resize(points.position.size());
+    clipped_now_ = 0;
     Real bore = 0, liquid = 0, solids = 0;
     for (std::size_t i = 0; i < void_fraction_.size(); ++i) {
         Real eps = 1 - at_point_[i].volume / points.volume[i];
-        if (eps < floor) {
-            eps = floor;
-            ++clipped_;
+        if (eps < least_void_fraction) {
+            eps = least_void_fraction;
+            ++clipped_now_;
         }
         void_fraction_[i] = eps;
         bore += points.volume[i];
@@ -54,10 +75,13 @@ void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
     liquid_volume_error_ = liquid / (bore - solids) - 1;
 }
 
-Response Exchange::response(std::span<const Real> drag, std::span<const Vec3> velocity) const {
+Response Exchange::response(std::span<const Real> drag, std::span<const Vec3> velocity) {
+    require(!given_, "Exchange: begin comes before response");
     require(drag.size() == volume_.size() && velocity.size() == volume_.size(),
             "Exchange: drag and velocity must have one row per solid");
-    std::vector<AtPoint> at(void_fraction_.size());
+    std::vector<AtPoint>& at = at_point_;
+    for (std::size_t p = 0; p < drag.size(); ++p)
+        footprints_.each(p, [&](Index i, Real) { at[i] = {}; });
     for (std::size_t p = 0; p < drag.size(); ++p) {
         const Vec3 force = drag[p] * velocity[p];
         footprints_.each(p, [&](Index i, Real w) {
@@ -65,18 +89,16 @@ Response Exchange::response(std::span<const Real> drag, std::span<const Vec3> ve
             at[i].force += w * force;
         });
     }
-    for (std::size_t i = 0; i < at.size(); ++i) { // to rates [1/s] and accelerations [m/s2]
-        const Real inertia = density_ * points_.volume[i] * void_fraction_[i];
-        at[i].drag /= inertia;
-        at[i].force = (1 / inertia) * at[i].force - at[i].drag * field_[i];
-    }
     Response result;
+    result.relaxation.reserve(drag.size());
+    result.acceleration.reserve(drag.size());
     for (std::size_t p = 0; p < drag.size(); ++p) {
         Real rate = 0;
         Vec3 by_drag;
         footprints_.each(p, [&](Index i, Real w) {
-            rate += w * at[i].drag;
-            by_drag += w * at[i].force;
+            const Real share = w / (density_ * points_.volume[i] * void_fraction_[i]);
+            rate += share * at[i].drag;
+            by_drag += share * (at[i].force - at[i].drag * field_[i]);
         });
         result.relaxation.push_back(rate);
         result.acceleration.push_back(acceleration_[p] + by_drag +
@@ -91,6 +113,8 @@ void Exchange::give(const SolidsStep& step) {
                 (step.impulse.empty() || step.impulse.size() == n),
             "Exchange: position, mean_velocity, drag and impulse must have one row per solid");
     require(step.duration > 0, "Exchange: duration must be > 0 s");
+    require(!given_, "Exchange: begin comes before give");
+    given_ = true;
     start_.assign(step.position.begin(), step.position.end());
     mean_velocity_.assign(step.mean_velocity.begin(), step.mean_velocity.end());
     drag_.assign(step.drag.begin(), step.drag.end());
@@ -104,6 +128,8 @@ void Exchange::give(const SolidsStep& step) {
 }
 
 mps::Load Exchange::before(const mps::LiquidPoints& points, Real elapsed, Real dt) {
+    require(given_ && elapsed + dt <= duration_ * (1 + 1e-6),
+            "Exchange: give, for the whole step of the liquid, comes before its advance");
     points_ = points;
     step_ = dt;
     position_.resize(start_.size());
@@ -143,6 +169,7 @@ mps::Load Exchange::before(const mps::LiquidPoints& points, Real elapsed, Real d
 
 std::span<const Vec3> Exchange::owed(std::span<const Vec3> velocity) {
     owed_.assign(velocity.size(), {});
+    clipped_ += clipped_now_;
     for (std::size_t p = 0; p < start_.size(); ++p) {
         const Vec3 by_drag =
             (drag_[p] * step_) * (footprints_.sample(p, velocity) - mean_velocity_[p]);

@@ -43,7 +43,7 @@ struct Response {
 /// Source: Zhou, Kuang, Chu & Yu (2010), doi:10.1017/S002211201000306X, set II (Model B).
 class Exchange final : public mps::Loading {
 public:
-    static constexpr Real floor = 0.3; // [-] of eps; a clip, counted
+    static constexpr Real least_void_fraction = 0.3; // [-] a clip, counted
 
     Exchange(Real smoothing_radius, Real liquid_density);
 
@@ -54,8 +54,7 @@ public:
     [[nodiscard]] std::span<const Vec3> liquid_velocity() const noexcept { return velocity_; }
     /// How the liquid at the solids will change, for K [kg/s] and v of the solids now, as they lie
     /// at the start of the step.
-    [[nodiscard]] Response response(std::span<const Real> drag,
-                                    std::span<const Vec3> velocity) const;
+    [[nodiscard]] Response response(std::span<const Real> drag, std::span<const Vec3> velocity);
 
     /// Take what the solids did; the next advance of the liquid hears of it.
     void give(const SolidsStep& step);
@@ -67,8 +66,9 @@ public:
     [[nodiscard]] std::span<const Vec3> impulse() const noexcept { return received_; }
     /// Void fractions of liquid points raised to the floor in that step, over its substeps.
     [[nodiscard]] std::size_t clipped() const noexcept { return clipped_; }
-    /// Impulse on the liquid and on the solids together, over the sum of the sizes of those on the
-    /// solids [-].
+    /// Impulse handed to the liquid and got by the solids together, over the sum of the sizes of
+    /// those on the solids [-]: that nothing is lost between them. What the liquid then makes of it
+    /// is its own ledger's.
     [[nodiscard]] Real mismatch() const noexcept;
     /// Volume of the liquid by its void fractions, over bore less solids, less 1 [-].
     [[nodiscard]] Real liquid_volume_error() const noexcept { return liquid_volume_error_; }
@@ -93,7 +93,8 @@ private:
     std::vector<Vec3> start_, position_, mean_velocity_, impulse_, received_;
     std::vector<Real> drag_;
     Real duration_ = 0;
-    bool free_ = true; // whether the solids say what impulse they got
+    bool given_ = true; // whether the step begun has been given
+    bool free_ = true;  // whether the solids say what impulse they got
 
     // Of the liquid's points.
     mps::LiquidPoints points_{};
@@ -102,7 +103,7 @@ private:
     std::vector<Real> void_fraction_, beta_;
     std::vector<Vec3> flux_, drag_of_solids_, owed_;
     Real step_ = 0; // [s] of the substep under way
-    std::size_t clipped_ = 0;
+    std::size_t clipped_now_ = 0, clipped_ = 0;
     Real liquid_volume_error_ = 0;
     Vec3 on_liquid_, on_solids_; // [N s]
     Real sizes_ = 0;             // [N s]

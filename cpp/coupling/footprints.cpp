@@ -10,7 +10,8 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
     const Real reach = kernel_.radius, period = points.period;
     require(reach > 0 && (period == 0 || 2 * reach <= period),
             "Footprints: the smoothing radius must be > 0 m and at most half the period");
-    if (!grid_) grid_.emplace(reach, period);
+    if (!grid_ || period != period_) grid_.emplace(reach, period);
+    period_ = period;
     const neighbors::Cells cells(points.position, reach, period, 1);
     grid_->sort(points.position, cells, order_, 1);
     sorted_.resize(order_.size());

@@ -23,8 +23,6 @@ public:
     /// Find them for solids at `position`; positions must be finite, and x within the period.
     void find(const mps::LiquidPoints& points, std::span<const Vec3> position);
 
-    [[nodiscard]] std::size_t size() const noexcept { return first_.size() - 1; }
-
     /// visit(i, w_ip) for the points of solid p.
     template <class Visit>
     void each(std::size_t p, const Visit& visit) const {
@@ -42,6 +40,7 @@ public:
 private:
     SmoothingKernel kernel_;
     std::optional<neighbors::CellGrid> grid_;
+    Real period_ = 0; // [m]
     std::vector<Index> order_;
     std::vector<std::size_t> first_ = {0};
     std::vector<Index> point_;

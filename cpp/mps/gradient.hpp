@@ -14,8 +14,7 @@ namespace mpsdem::mps {
 /// What a pair of particles brings to a gradient.
 template <class F>
 concept GradientForm = requires(const F& form, Real p) {
-    { form(p, p) }
-    noexcept->std::same_as<Real>;
+    { form(p, p) } noexcept -> std::same_as<Real>;
 };
 
 /// p_j + p_i: pairs are equal and opposite, so momentum is kept to round-off; a constant pressure

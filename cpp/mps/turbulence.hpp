@@ -13,8 +13,7 @@ namespace mpsdem::mps {
 /// An eddy viscosity is nu_t = l^2 |S|; a model gives the length l [m] at a point.
 template <class M>
 concept LengthModel = requires(const M& model, Vec3 x) {
-    { model.length(x) }
-    noexcept->std::same_as<Real>;
+    { model.length(x) } noexcept -> std::same_as<Real>;
 };
 
 /// Mixing length of developed flow in a round pipe about the x axis:

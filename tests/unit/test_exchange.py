@@ -242,6 +242,33 @@ def test_a_bed_that_is_held_costs_the_drag_on_it(water, stiffness, steps):
 
 
 @EVERY_LIQUID
+@pytest.mark.parametrize("stiffness", [0.1, 1.5, 20.0])
+def test_a_given_gradient_pushes_a_bed_s_liquid_until_its_drag_is_as_large(water, stiffness):
+    step, exchange = 4e-3, new_exchange()
+    liquid = water(bulk_velocity=0.01, pressure_gradient=1000.0)
+    solids = crowd(900, velocity=(0.0, 0.0, 0.0), spread=0.0)
+    fraction = solids.volume.sum() / BORE
+    solids.drag[:] = stiffness * DENSITY * (1 - fraction) / step * BORE / len(solids.drag)
+    for _ in range(300):
+        report = go(exchange, liquid, solids, step)
+    drag = exchange.impulse.sum(axis=0) / (step * BORE)
+    assert report.mean_gradient == pytest.approx(1000.0, rel=1e-6)
+    assert drag[0] + report.friction == pytest.approx(1000.0, rel=0.02)
+
+
+@EVERY_LIQUID
+def test_a_stiff_plug_in_a_part_of_the_pipe_is_no_pump(water):
+    liquid, exchange, step = water(bulk_velocity=0.05), new_exchange(), 4e-3
+    solids = crowd(900, velocity=(0.0, 0.0, 0.0), spread=0.0)
+    solids.position[:, 0] *= 0.3
+    fraction = solids.volume.sum() / (0.3 * BORE)
+    solids.drag[:] = 10 * DENSITY * (1 - fraction) / step * 0.3 * BORE / len(solids.drag)
+    for _ in range(60):
+        go(exchange, liquid, solids, step)
+    assert np.linalg.norm(liquid.velocity, axis=1).max() < 0.3
+
+
+@EVERY_LIQUID
 def test_liquid_flows_over_a_bed_rather_than_through_it(water):
     liquid, exchange = water(), new_exchange()
     solids = crowd(350, velocity=(0.0, 0.0, 0.0), spread=0.0, below=-0.02, drag=2.0)

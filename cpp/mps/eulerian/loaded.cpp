@@ -144,6 +144,7 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
     if (first) carried_to = before;
     (void)interior_velocity();
     const std::size_t inner = section_.interior_count();
+    if (drive_.pressure_gradient) on.gradient = *drive_.pressure_gradient / density_;
 
     // du/dt by convection and viscosity; the walls' drag on the layer next to them.
     find_rates(on);
@@ -226,18 +227,18 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
         share * density_ * ((after - carried_to) / dt - applied + taken - exchanged);
 }
 
-/// How much more gradient than in clear liquid it takes to change the flux in a step [-]: drag
-/// beside drag in a section, and section after section. Held so, the gradient is found in a step or
-/// two.
+/// How much more gradient than in clear liquid it takes to change the flux in a step [-]: before
+/// its pressure is known, each place yields as its own drag lets it. So the gradient of a bed that
+/// fills the pipe is found in a step or two, and one that fills a part of it is not overdone.
 Real Liquid::stiffness(const Loaded& on, Real dt) const {
-    Real sum = 0;
-    for (std::size_t k = 0; k < stations(); ++k) {
-        Real open = 0;
-        for (std::size_t i = 0; i < section_.interior_count(); ++i)
-            open += section_.area(i) / (1 + dt * on.beta[i][k] / on.eps[i][k]);
-        sum += interior_area_ / open;
+    Real open = 0;
+    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k)
+            row += 1 / (1 + dt * on.beta[i][k] / on.eps[i][k]);
+        open += section_.area(i) * row;
     }
-    return sum / static_cast<Real>(stations());
+    return interior_area_ * static_cast<Real>(stations()) / open;
 }
 
 /// du/dt of the inner nodes into star_: convection stands there already.
@@ -365,14 +366,16 @@ std::vector<Real> Liquid::void_fraction() const {
 }
 
 Real Liquid::mixture_velocity(const Loaded& on) const {
-    Real sum = 0;
+    // The solids are spread over the inner nodes, which share the bore among them.
+    Real liquid = 0, solids = 0;
     for (std::size_t i = 0; i < section_.size(); ++i) {
         Real row = 0;
-        for (std::size_t k = 0; k < stations(); ++k)
-            row += on.eps[i][k] * u_.x[i][k] + on.flux.x[i][k];
-        sum += section_.area(i) * row;
+        for (std::size_t k = 0; k < stations(); ++k) row += on.eps[i][k] * u_.x[i][k];
+        liquid += section_.area(i) * row;
     }
-    return sum / (bore_area_ * static_cast<Real>(stations()));
+    for (std::size_t i = 0; i < section_.interior_count(); ++i)
+        solids += section_.area(i) * total({on.flux.x[i], stations()});
+    return (liquid / bore_area_ + solids / interior_area_) / static_cast<Real>(stations());
 }
 
 } // namespace mpsdem::mps::eulerian

@@ -31,7 +31,9 @@ constexpr Real spare_places = 0.05; // [-] of the liquid, for what a plate bring
 // of the particles that come and go is not followed, and a lasting difference does not build up
 constexpr Real flux_feedback = 0.3;
 constexpr Real fastest_over_bulk = 1.4; // [-] in clear turbulent flow; beyond it, solids narrow it
-constexpr Real outlier = 8;      // [-] of the scatter of p', in a liquid with solids
+constexpr Real farthest_with_solids = 0.8; // [-] spacings that volume may go in a step, and twice
+                                           // the way of the liquid past its particles
+constexpr Real outlier = 8;                // [-] of the scatter of p', in a liquid with solids
 constexpr int section_turns = 4;  // [-] of the same, where solids part the flux along the pipe
 constexpr Real outlet_hold = 100; // [-] Dirichlet part over n0: p' is held to zero within a percent
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
@@ -208,6 +210,7 @@ AdvanceReport Liquid::advance(Real dt, Loading* loading) {
         report.unexplained += unexplained_ * length / dt;
         report.convection_error += convection_error_ * length / dt;
     }
+    load_ = {}; // its spans are the solids'
     return report;
 }
 
@@ -237,6 +240,7 @@ bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed
     find_pairs();
     const Real carried_to = mean_momentum();
     load_ = loading == nullptr ? Load{} : loading->before(points(), elapsed, dt);
+    if (loaded() && outruns(dt)) return false;
     velocity_before_ = velocity_;
     const Real before = mean_momentum();
     const AxialBins bins_before = flux_of_sections([&](std::size_t i) { return flux_before(i); });
@@ -260,6 +264,18 @@ bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed
     if (!ends_.periodic()) move_plate(dt, report);
     if (loaded()) leave_load(dt, *loading);
     return true;
+}
+
+/// Whether the volume flux or the liquid past its particles would go too far in a step.
+bool Liquid::outruns(Real dt) const {
+    Real square = 0;
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
+        const Vec3 flux = load_.void_fraction[i] * velocity_[i] + load_.solids_flux[i];
+        const Vec3 past = velocity_[i] - flux;
+        square = std::max({square, dot(flux, flux), 4 * dot(past, past)});
+    }
+    const Real farthest = std::max(numerics_.courant, farthest_with_solids);
+    return std::sqrt(square) * dt > farthest * (1 + 1e-9) * numerics_.particle_spacing;
 }
 
 /// Share of the liquid at a particle, of the load where there is one [-].
@@ -829,6 +845,7 @@ void Liquid::restore(const Snapshot& s) {
     acceleration_of_last_ = s.acceleration;
     volume_flux_ = s.flux;
     eps_ = s.void_fraction;
+    load_ = {};
 }
 
 } // namespace mpsdem::mps::lagrangian

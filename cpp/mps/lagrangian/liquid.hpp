@@ -91,13 +91,15 @@ struct AdvanceReport {
 /// With solids in it (`Load`), the particles go on to fill the bore evenly and move with the volume
 /// flux w = eps u + s, which has no divergence, while the liquid passes them with u - w:
 ///
-///   u* = u + dt (viscous terms, div(eps nu grad u) / eps, + wall shear - (u - w) . grad u)
+///   u* = u + dt (viscous terms + wall shear - (u - w) . grad u)
 ///   w* = a (eps u* + dt D / rho) + s,    a = 1 / (1 + dt beta / (rho eps))    drag implicit
 ///   div(a grad p') = (rho / dt) div w*
 ///   w  = w* + a dt / rho (G - grad p'),  u = (w - s) / eps,  x <- x + dt w + shift
 ///
-/// so that the number density stays that of the clear liquid, and d(eps)/dt need not be found. G is
-/// then a function of x that gives each section back what drag and walls took from its flux.
+/// The viscous terms are div(eps nu grad u) / eps in turbulent flow; in laminar flow nu lap u, as
+/// the solids' drag outweighs what it misses. So the number density stays that of the clear liquid,
+/// and d(eps)/dt need not be found. G is then a function of x that gives each section back what
+/// drag and walls took from its flux.
 ///
 /// Sources: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205; shifting after Xu, Stansby &
 /// Laurence (2009), doi:10.1016/j.jcp.2009.05.032.
@@ -132,8 +134,6 @@ public:
     [[nodiscard]] LiquidPoints points() const noexcept {
         return {liquid_position(), volume_, period()};
     }
-    [[nodiscard]] Real density() const noexcept { return density_; } // [kg/m3]
-
     /// Particles there may be: each has its place in the arrays below, in the order they were
     /// given. A place that no particle holds at the moment is liquid, with NaN for a position.
     [[nodiscard]] std::size_t places() const noexcept { return places_; }
@@ -214,6 +214,7 @@ private:
     void move(Real dt, AdvanceReport& report);
     [[nodiscard]] bool loaded() const noexcept { return !load_.void_fraction.empty(); }
     [[nodiscard]] Real liquid_share(std::size_t i) const noexcept;
+    [[nodiscard]] bool outruns(Real dt) const;
     [[nodiscard]] Real mean_momentum() const;
     [[nodiscard]] Real add_relative_convection(Real dt);
     void take_load(Real dt, Real brought);
