@@ -45,7 +45,8 @@ class Fidelity(Part):
         Distance between the particles of a computed liquid [m]; by default 1/10, 1/16 or 1/24 of
         the bore. The layout takes the nearest that divides the radius.
     courant : float
-        Largest speed of a computed liquid times its step over the spacing [-].
+        Largest speed of a computed liquid times its step over the spacing [-]; nodes with solids
+        between them part a step where it exceeds 0.45.
     convection : {"upwind", "muscl"}
         How a liquid on fixed nodes is carried: least-squares upwind, or MUSCL-Rusanov, slower, more
         damped and more robust.

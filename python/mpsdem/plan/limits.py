@@ -15,6 +15,7 @@ from mpsdem.plan.scales import (
     drag_rate,
     has_lubrication,
     impacts,
+    is_two_way,
     liquid_model,
     lubrication_time,
     materials,
@@ -166,6 +167,8 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
     courant = case.fidelity.courant
     if on_axis > 0:
         name = f"{courant:g} of the liquid's time to cross a spacing at {on_axis:.3g} m/s"
+        if liquid_model(case) == "eulerian" and is_two_way(case):
+            name += ", parted by the liquid itself at 0.45, for its solids"
         yield Limit(name=name, value=courant * spacing / on_axis)
     if (stirring := stirring_speed(case)) > 0:
         name = f"{courant:g} of a settling solid's time to cross a spacing at {stirring:.3g} m/s"

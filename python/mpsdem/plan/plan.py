@@ -43,15 +43,16 @@ from mpsdem.plan.scales import (
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 _SERIAL = 5000  # solids up to which threads cost more than they gain
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
-_FOOTPRINT_TIME = 3.5e-7  # [s] exchange of one solid with one point of the liquid, once
+# [s] exchange of one solid with one point of the liquid, once, and its memory
+_FOOTPRINT_TIME, _FOOTPRINT_BYTES = 5e-8, 24
 _CALL_TIME = 1e-4  # [s] one turn of the time loop
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 # [s] one step of one liquid particle or node, its pressure included, and its memory
 _PARTICLE_TIME = {"lagrangian": 2e-6, "eulerian": 0.4e-6}
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
-# Wall units from the wall below which the nodes' friction is 4 % high: 4.3 % at 15, 3.6 % at 26.
 _LIVELY = 300  # [-] Reynolds number up to which laminar particles damp a swirl
+# Wall units from the wall below which the nodes' friction is 4 % high: 4.3 % at 15, 3.6 % at 26.
 _LEAST_PLUS = 20
 _BASE_BYTES = 150_000_000  # memory of the program before any solid
 
@@ -427,17 +428,21 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     particles, model = particle_count(case), liquid_model(case) or ""
     particle_time = particles * _PARTICLE_TIME.get(model, 0.0)
     particle_bytes = particles * _PARTICLE_BYTES.get(model, 0)
+    exchange_time, solid_bytes = 0.0, float(_SOLID_BYTES)
     if is_two_way(case):
         spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
         footprint = 4 / 3 * math.pi * (smoothing_radius(case) / spacing) ** 3
-        particle_time += count * footprint * _FOOTPRINT_TIME
+        # twice a step of the liquid, which is parted in two, and once a turn; on one thread
+        exchange_time = count * footprint * _FOOTPRINT_TIME * (1 + 2 / turns)
+        particle_time *= 2
+        solid_bytes += footprint * _FOOTPRINT_BYTES
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
         wall_seconds=(
             count * steps * (clock.substeps / SOLID_RATE / threads + _SAMPLE_TIME)
-            + steps * (_CALL_TIME + particle_time / turns / threads)
+            + steps * (_CALL_TIME + exchange_time + particle_time / turns / threads)
         ),
-        memory_bytes=_BASE_BYTES + count * _SOLID_BYTES + particle_bytes,
+        memory_bytes=_BASE_BYTES + count * solid_bytes + particle_bytes,
         disk_bytes=frame_bytes * (clock.frames + 1),
     )
 

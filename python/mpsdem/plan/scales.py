@@ -150,7 +150,8 @@ def smoothing_radius(case: Case) -> float:
     Raises
     ------
     CaseError
-        If it is given so small that what solids and liquid exchange would be noise.
+        If it is so small that what solids and liquid exchange would be noise, or so large that a
+        solid would meet itself around a periodic pipe.
     """
     if case.solids is None:
         return 0.0
@@ -158,8 +159,18 @@ def smoothing_radius(case: Case) -> float:
     if liquid_model(case) in COMPUTED:
         spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     given = case.fidelity.smoothing_radius
+    radius = max(2.5 * diameter, 3 * spacing) if given is None else given
+    if is_two_way(case) and 2 * radius > case.pipe.length:
+        problem = Problem(
+            field="fidelity.smoothing_radius",
+            value=radius,
+            unit="m",
+            rule=f"must be <= {case.pipe.length / 2:g} m, half the length of the pipe",
+            remedy="take a longer pipe, or fidelity.coupling = 'one-way'",
+        )
+        raise CaseError([problem])
     if given is None:
-        return max(2.5 * diameter, 3 * spacing)
+        return radius
     least = max(1.5 * diameter, 2 * spacing)
     if is_two_way(case) and given < least:
         what = "1.5 largest diameters" if least > 2 * spacing else "two spacings of the liquid"

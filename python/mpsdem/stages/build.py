@@ -90,7 +90,10 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                 yield AdvanceLiquid(turns=plan.turns_per_liquid_step, held=held)
             case "SampleLiquid", _, _:
                 turns = plan.turns_per_liquid_step
-                yield BeginExchange(turns=turns) if plan.two_way else SampleLiquid()
+                if plan.two_way:
+                    yield BeginExchange(turns=turns, pipe_radius=pipe.radius)
+                else:
+                    yield SampleLiquid()
             case "FindVoidFraction", _, _:
                 average = coupling.VoidFraction(
                     pipe_radius=pipe.radius,
@@ -117,7 +120,11 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
             case "HoldSolids", _, _:
                 yield HoldSolids()
             case "ExchangeMomentum", Solids() as solids, _:
-                yield ExchangeMomentum(turns=plan.turns_per_liquid_step, held=solids.held)
+                yield ExchangeMomentum(
+                    turns=plan.turns_per_liquid_step,
+                    held=solids.held,
+                    pipe_radius=pipe.radius,
+                )
             case "Record", _, _:
                 yield Record(
                     writer=writer,

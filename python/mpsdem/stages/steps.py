@@ -71,10 +71,12 @@ class BeginExchange:
 
     name: ClassVar[str] = "SampleLiquid"
     turns: int
+    pipe_radius: float
 
     def __call__(self, state: State, _dt: float) -> None:
         if state.step > 0 and (state.step - 1) % self.turns:
             return
+        check(state, self.pipe_radius)  # no liquid is found around a solid outside the bore
         _, exchange = state.partners
         state.begun_at = state.solids.position
         begin_exchange(state)
@@ -204,6 +206,7 @@ class ExchangeMomentum:
     name: ClassVar[str] = "ExchangeMomentum"
     turns: int
     held: bool
+    pipe_radius: float
 
     def __call__(self, state: State, dt: float) -> None:
         solids, (_, exchange) = state.solids, state.partners
@@ -213,6 +216,7 @@ class ExchangeMomentum:
             state.impulse = state.impulse + solids.drag_impulse
         if state.step % self.turns:
             return
+        check(state, self.pipe_radius)
         exchange.give(
             position=state.begun_at,
             mean_velocity=state.mean_velocity,
