@@ -11,7 +11,16 @@ from collections.abc import Iterable
 
 from rich.console import Console
 
-from mpsdem.validation import drag, eulerian, impacts, particle_liquid, pipe, push_plate, rolling
+from mpsdem.validation import (
+    drag,
+    eulerian,
+    impacts,
+    particle_liquid,
+    pipe,
+    push_plate,
+    rolling,
+    two_way,
+)
 from mpsdem.validation.registry import Check, Outcome, Source, collect, select
 from mpsdem.validation.report import report
 
@@ -25,6 +34,7 @@ CHECKS = collect(
     particle_liquid.checks(),
     eulerian.checks(),
     push_plate.checks(),
+    two_way.checks(),
 )
 """All checks by their ids."""
 
