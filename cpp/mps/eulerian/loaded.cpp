@@ -367,14 +367,31 @@ std::vector<Real> Liquid::void_fraction() const {
 
 Real Liquid::mixture_velocity(const Loaded& on) const {
     // The solids are spread over the inner nodes, which share the bore among them.
+    const std::size_t inner = section_.interior_count();
     Real liquid = 0, solids = 0;
-    for (std::size_t i = 0; i < section_.size(); ++i) {
+    for (std::size_t i = 0; i < inner; ++i) {
         Real row = 0;
         for (std::size_t k = 0; k < stations(); ++k) row += on.eps[i][k] * u_.x[i][k];
         liquid += section_.area(i) * row;
-    }
-    for (std::size_t i = 0; i < section_.interior_count(); ++i)
         solids += section_.area(i) * total({on.flux.x[i], stations()});
+    }
+    // Where drag outweighs viscosity over a spacing, the wall slows less than half of it: what its
+    // nodes stand for goes with the liquid inward of them, as in a packed bed.
+    for (std::size_t w = 0; w < section_.wall_count(); ++w) {
+        const std::size_t i = inner + w;
+        const auto [node, share] = section_.inward(w);
+        Real row = 0;
+        for (std::size_t k = 0; k < stations(); ++k) {
+            const auto inward = [&](const Field& f) {
+                return share[0] * f[node[0]][k] + share[1] * f[node[1]][k];
+            };
+            const Real spacing = section_.spacing();
+            const Real drag = on.beta[i][k] * spacing * spacing / (on.eps[i][k] * inward(nu_t_));
+            const Real u = u_.x[i][k];
+            row += on.eps[i][k] * (u + drag / (1 + drag) * (inward(u_.x) - u));
+        }
+        liquid += section_.area(i) * row;
+    }
     return (liquid / bore_area_ + solids / interior_area_) / static_cast<Real>(stations());
 }
 

@@ -407,6 +407,14 @@ void Liquid::hold_sections(Real dt, const AxialBins& before) {
         });
     }
     gradient_ = density_ / dt * mean_in_bore([&](std::size_t i) { return scalar_[i]; });
+
+    // Across the pipe the mean flux is nil: a uniform gradient undoes what drag does to it, as one
+    // undoes gravity, and the solver need not.
+    const Real open = mean_in_bore([&](std::size_t i) { return damping_[i]; });
+    const Vec3 across{0, mean_in_bore([&](std::size_t i) { return velocity_[i].y; }) / open,
+                      mean_in_bore([&](std::size_t i) { return velocity_[i].z; }) / open};
+    parallel_for(liquid_count_, numerics_.threads,
+                 [&](std::size_t i) { velocity_[i] -= damping_[i] * across; });
 }
 
 /// From the volume flux back to the liquid's velocity; what the solids still owe is paid.

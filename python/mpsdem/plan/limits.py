@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,7 @@ from mpsdem.plan.scales import (
     materials,
     pipe_profile,
     require_speed,
+    response_time,
     solids_of,
     spring_stiffness,
     stirring_speed,
@@ -34,6 +36,9 @@ _LARGEST_SHARE = 0.5
 # a faster one is shorter, and is resolved by as many steps.
 _COLLISION_WORTH = 1 / 3
 _VISCOUS_SHARE = 0.1  # [-] of spacing^2 / viscosity, as the liquid's own step takes
+# [-] of the time in which a bed's drag acts on its liquid: from 1 on, what substeps foresee of the
+# liquid and what its pressure then does to it swing against each other
+_RESPONSE_SHARE = 0.8
 _COUPLING_SHARE = 0.1  # [-] of the times over which the forces on a solid change
 SOLID_RATE = 2e7  # solids x steps per second on one thread in a dense bed; in the open 1.4e8
 
@@ -173,6 +178,9 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
     if (stirring := stirring_speed(case)) > 0:
         name = f"{courant:g} of a settling solid's time to cross a spacing at {stirring:.3g} m/s"
         yield Limit(name=name, value=courant * spacing / stirring)
+    if math.isfinite(response := response_time(case)):
+        name = f"{_RESPONSE_SHARE:g} of the time in which a bed brings its liquid to rest"
+        yield Limit(name=name, value=_RESPONSE_SHARE * response)
     viscous = _VISCOUS_SHARE * spacing**2 / case.liquid.kinematic_viscosity
     yield Limit(name=f"{_VISCOUS_SHARE:g} of the viscous time of a spacing", value=viscous)
     if case.fidelity.liquid_step is not None:

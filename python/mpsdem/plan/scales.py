@@ -15,6 +15,7 @@ from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
 from mpsdem.contacts import Impact, Stiffness
 
 FloatArray = NDArray[np.float64]
+_BED = 0.45  # [-] void fraction of a settled bed
 DragLaw = (
     coupling.SchillerNaumann
     | coupling.WenYu
@@ -98,33 +99,54 @@ def require_speed(speed: float, field: str, remedy: str) -> None:
 
 def terminal_velocity(case: Case) -> float:
     """Speed at which a lone solid of mean volume settles in the liquid at rest [m/s]."""
+    return _balance_slip(case, void_fraction=1.0)
+
+
+def _balance_slip(case: Case, *, void_fraction: float) -> float:
+    """Slip at which the drag on a solid of mean volume balances its weight in the liquid [m/s]."""
     solids, liquid = case.solids, case.liquid
     if solids is None or liquid is None:
         return 0.0
     diameter = mean_diameter(solids)
     weight = abs(1 - liquid.density / solids.density) * case.gravity  # [m/s2]
+
+    def rate(slip: float) -> float:
+        return drag_rate(case, diameter=diameter, slip=slip, void_fraction=void_fraction)
+
     # No drag law gives less than half of Stokes's drag.
-    fastest = 2 * weight / drag_rate(case, diameter=diameter, slip=0.0)
+    fastest = 2 * weight / rate(0.0)
     if fastest == 0:
         return 0.0
-    return float(
-        brentq(
-            lambda slip: slip * drag_rate(case, diameter=diameter, slip=slip) - weight,
-            0.0,
-            fastest,
-        )
-    )
+    return float(brentq(lambda slip: slip * rate(slip) - weight, 0.0, fastest))
 
 
-def drag_rate(case: Case, *, diameter: float, slip: float) -> float:
-    """Drag over mass and slip of a lone solid [1/s], at a slip [m/s]."""
+def response_time(case: Case) -> float:
+    """Time in which a bed that hovers would bring the liquid in it to its own velocity [s].
+
+    1 / L = eps rho u_r / ((1 - eps) (rho_s - rho) g), u_r the slip at which drag balances weight;
+    infinite where the liquid feels no solids, or these have no weight.
+    """
+    if case.liquid is None or case.solids is None or not is_two_way(case):
+        return math.inf
+    slip = _balance_slip(case, void_fraction=_BED)
+    if slip == 0:
+        return math.inf
+    weight = abs(case.solids.density / case.liquid.density - 1) * case.gravity  # [m/s2]
+    return _BED * slip / ((1 - _BED) * weight)
+
+
+def drag_rate(case: Case, *, diameter: float, slip: float, void_fraction: float = 1.0) -> float:
+    """Drag of a solid over its mass and slip [1/s], at a slip [m/s]; alone unless told otherwise.
+
+    `void_fraction` is the share of liquid around it [-].
+    """
     solids, liquid = solids_of(case), case.liquid
     assert liquid is not None
     rate = coupling.drag_rate(
         DRAG_LAWS[solids.drag](),
         liquid_velocity=np.array([[slip, 0.0, 0.0]]),
         velocity=np.zeros((1, 3)),
-        void_fraction=np.ones(1),
+        void_fraction=np.array([void_fraction]),
         diameter=np.array([diameter]),
         density=np.array([solids.density]),
         liquid_density=liquid.density,

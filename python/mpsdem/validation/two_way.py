@@ -22,7 +22,7 @@ from mpsdem.validation.registry import Check, Source
 FloatArray = NDArray[np.float64]
 
 #: Liquids that feel solids; a row of each check for each of them.
-MODELS = ("lagrangian",)
+MODELS = ("lagrangian", "eulerian")
 
 GRAVITY = 9.81  # [m/s2]
 GLASS = 2500.0  # [kg/m3]
