@@ -31,7 +31,8 @@ class AdvanceLiquid:
         if not state.liquid.sound:
             remedy = "a smaller fidelity.courant; then another fidelity.particle_spacing"
             if state.exchange is not None:
-                remedy = f"a smaller fidelity.liquid_step, or a larger fidelity.smoothing_radius; {remedy}"
+                wider = "a larger fidelity.smoothing_radius"
+                remedy = f"a smaller fidelity.liquid_step, or {wider}; {remedy}"
             raise SimulationDiverged(
                 step=state.step,
                 time=state.time,

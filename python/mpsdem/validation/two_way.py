@@ -44,6 +44,9 @@ def checks() -> Iterator[Check]:
         yield from _hovering(model)
         yield from _riser(model)
         yield from _sliding(model)
+        yield from _resting(model)
+        yield from _of_any_density(model)
+        yield from _by_resolution(model)
 
 
 def _lone(model: str) -> Iterator[Check]:
@@ -154,6 +157,15 @@ def _sliding(model: str) -> Iterator[Check]:
         unit="weight",
         source=EQUILIBRIUM,
     )
+    yield Check(
+        id=f"two-way/{model}/sliding/momentum",
+        claim="the impulse that nothing explains is small beside that of the walls",
+        expected=0.0,
+        measure=_of(run, lambda flow: flow.momentum_error),
+        absolute=0.02,
+        unit="friction",
+        source=NEWTON,
+    )
     for name, flow_of in (("riser", _risen), ("sliding", _slid)):
         yield Check(
             id=f"two-way/{model}/{name}/exchange",
@@ -162,6 +174,59 @@ def _sliding(model: str) -> Iterator[Check]:
             measure=_of(partial(flow_of, model), lambda flow: flow.exchange_error),
             absolute=1e-12,
             source=NEWTON,
+        )
+
+
+def _resting(model: str) -> Iterator[Check]:
+    """A cloud that has settled in a level pipe, in liquid at rest."""
+    yield Check(
+        id=f"two-way/{model}/rest/lift",
+        claim="solids that have come to rest on the wall weigh nothing on the liquid",
+        expected=0.0,
+        measure=_of(partial(_rested, model), lambda flow: flow.lift),
+        absolute=0.01,
+        unit="weight",
+        source=EQUILIBRIUM,
+    )
+
+
+def _of_any_density(model: str) -> Iterator[Check]:
+    """Solids lighter and heavier than the liquid in a level pipe at 1 m/s."""
+    for ratio in (0.5, 1.0, 1.05, 10.0):
+        yield Check(
+            id=f"two-way/{model}/density/{ratio}",
+            claim="solids of any density go along with the liquid, not before it",
+            expected=0.5,
+            measure=_of(partial(_slid, model, ratio * WATER, 2.0), lambda flow: flow.velocity),
+            absolute=0.6,
+            unit="U",
+            source=EQUILIBRIUM,
+        )
+
+
+def _by_resolution(model: str) -> Iterator[Check]:
+    """The packed bed with other spacings of the liquid, and other footprints of the solids."""
+    for per_spacing in (0.5, 1, 2, 4):
+        yield Check(
+            id=f"two-way/{model}/bed/spacing/{per_spacing}",
+            claim="the loss of pressure in a bed does not hang on diameters per spacing",
+            expected=1.0,
+            measure=partial(_bed_loss, model, 0.02, spacing=1 / per_spacing),
+            relative=0.05,
+            unit="Ergun",
+            source=ERGUN,
+            slow=True,
+        )
+    for radii in (2, 3, 4):
+        yield Check(
+            id=f"two-way/{model}/bed/smoothing/{radii}",
+            claim="nor on the smoothing radius over diameters",
+            expected=1.0,
+            measure=partial(_bed_loss, model, 0.02, smoothing=radii),
+            relative=0.05,
+            unit="Ergun",
+            source=ERGUN,
+            slow=True,
         )
 
 
@@ -181,8 +246,9 @@ class Flow:
         Of the solids in the liquid, over the volume of the bore [N/m3].
     velocity : float
         Of the solids along the pipe [m/s].
-    exchange_error, clipped : float
-        Of the whole run: the largest sum of what both got [-], and cut void fractions.
+    exchange_error, momentum_error, clipped : float
+        Of the whole run: the largest sum of what both got [-], impulse that nothing explains over
+        that of the walls [-], and cut void fractions.
     """
 
     gradient: float
@@ -193,6 +259,7 @@ class Flow:
     weight: float
     velocity: float
     exchange_error: float
+    momentum_error: float
     clipped: int
 
     @property
@@ -249,6 +316,7 @@ def _flow(case: Case) -> Flow:
             weight=weight,
             velocity=float(mean("solids_mean_velocity")),
             exchange_error=float(numbers["exchange_error"].max()),
+            momentum_error=float(results.summary["momentum_error"]),
             clipped=int(numbers["liquid_void_fraction_clipped"].sum()),
         )
 
@@ -337,7 +405,7 @@ def _crowd_speed(model: str, void_fraction: float) -> float:
             "drag": "di_felice",
             "arrangement": {"kind": "list", "positions": positions},
         },
-        fidelity={"particle_spacing": 1.2 * diameter, "liquid_step": 2e-3},
+        fidelity={"particle_spacing": 1.2 * diameter},
         liquid={"density": density, "kinematic_viscosity": viscosity},
     )
     law = coupling.DiFelice()
@@ -364,12 +432,19 @@ def _ergun(velocity: float, void_fraction: float, diameter: float) -> float:
 
 
 def _bed(
-    model: str, velocity: float, *, held: bool, end_time: float, spacing: float = 1.0
+    model: str,
+    velocity: float,
+    *,
+    held: bool,
+    end_time: float,
+    spacing: float = 1.0,
+    smoothing: float = 0.0,
+    planes: int = 7,
 ) -> tuple[Case, float]:
     """An even bed of 2 mm in a pipe that stands upright, and its void fraction."""
     diameter = 2e-3
     radius, length, positions, eps = _evenly(
-        rings=6, planes=7, solid_fraction=0.5, diameter=diameter
+        rings=6, planes=planes, solid_fraction=0.5, diameter=diameter
     )
     case = _case(
         model,
@@ -382,18 +457,26 @@ def _bed(
             "held": held,
             "arrangement": {"kind": "list", "positions": positions},
         },
-        # a longer step than the liquid's relaxation by free solids, 4 ms, lets them swing
         fidelity={
             "particle_spacing": spacing * diameter,
-            "liquid_step": 0.01 if held else 2.5e-3,
+            "smoothing_radius": smoothing * diameter or None,
         },
     )
     return case, eps
 
 
 @cache
-def _bed_loss(model: str, velocity: float) -> float:
-    case, eps = _bed(model, velocity, held=True, end_time=0.04 / velocity)
+def _bed_loss(model: str, velocity: float, spacing: float = 1.0, smoothing: float = 0.0) -> float:
+    """Loss of pressure over Ergun's; spacing and smoothing radius in diameters, 0 by default."""
+    case, eps = _bed(
+        model,
+        velocity,
+        held=True,
+        end_time=0.04 / velocity,
+        spacing=spacing,
+        smoothing=smoothing,
+        planes=13 if spacing > 1 or smoothing > 0 else 7,
+    )
     return _flow(case).gradient / _ergun(velocity, eps, 2e-3)
 
 
@@ -433,21 +516,36 @@ def _mixture_weight(flow: Flow) -> float:
 
 
 @cache
-def _slid(model: str) -> Flow:
+def _slid(model: str, density: float = 2700.0, end_time: float = 5.0) -> Flow:
     return _flow(
         _case(
             model,
             radius=0.1,
             length=0.6,
-            end_time=5.0,
+            end_time=end_time,
             velocity=1.0,
             inclination=0.0,
             solids={
                 "diameter": 0.02,
-                "density": 2700.0,
+                "density": density,
                 "count": 64,
                 "arrangement": {"kind": "random"},
             },
+            fidelity={"level": "quick"},
+        )
+    )
+
+
+@cache
+def _rested(model: str) -> Flow:
+    return _flow(
+        _case(
+            model,
+            radius=0.05,
+            length=0.12,
+            end_time=1.2,
+            inclination=0.0,
+            solids={"diameter": 5e-3, "count": 800, "arrangement": {"kind": "random"}},
             fidelity={"level": "quick"},
         )
     )
