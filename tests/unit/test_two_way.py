@@ -406,7 +406,7 @@ def test_a_liquid_that_diverges_says_what_to_change(monkeypatch, tmp_path):
             return SimpleNamespace(**told | {"sound": False})
 
     monkeypatch.setattr(coupling, "Exchange", Bursting)
-    with pytest.raises(SimulationDiverged, match=r"smaller fidelity\.liquid_step or a larger"):
+    with pytest.raises(SimulationDiverged, match=r"smaller fidelity\.liquid_step, or a larger"):
         Simulation(run_case(), tmp_path).run(bar=False)
 
 

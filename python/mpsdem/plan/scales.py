@@ -124,9 +124,9 @@ def response_time(case: Case) -> float:
     """Time in which a bed that hovers would bring the liquid in it to its own velocity [s].
 
     1 / L = eps rho u_r / ((1 - eps) (rho_s - rho) g), u_r the slip at which drag balances weight;
-    infinite where the liquid feels no solids, or these have no weight.
+    infinite where the liquid feels no solids, or these are held or have no weight.
     """
-    if case.liquid is None or case.solids is None or not is_two_way(case):
+    if case.liquid is None or case.solids is None or not is_two_way(case) or case.solids.held:
         return math.inf
     slip = _balance_slip(case, void_fraction=_BED)
     if slip == 0:

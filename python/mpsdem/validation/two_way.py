@@ -31,6 +31,11 @@ WATER = 998.2  # [kg/m3]
 VISCOSITY = 1.004e-6  # [m2/s] of water at 20 degrees Celsius
 UPRIGHT = math.pi / 2
 
+_ROWS_OF_THE_BED = (
+    "averaged over 2.5 diameters, the void fraction at a solid of this even bed reads 0.006 too "
+    "high, as its planes fall on the kernel's edge: 5 to 6 % of the drag; over 2 or 3 it does not"
+)
+
 EQUILIBRIUM = Source(cite="balance of forces")
 NEWTON = Source(cite="Newton's third law")
 
@@ -94,6 +99,7 @@ def _packed(model: str) -> Iterator[Check]:
             claim="a packed bed costs the pressure that Ergun measured",
             expected=1.0,
             measure=partial(_bed_loss, model, velocity),
+            slow=velocity < 0.01,
             relative=0.05,
             unit="Ergun",
             source=ERGUN,
@@ -216,6 +222,8 @@ def _by_resolution(model: str) -> Iterator[Check]:
             unit="Ergun",
             source=ERGUN,
             slow=True,
+            # From 1.2 diameters per spacing on the default smoothing radius is 2.5 diameters.
+            differs=_ROWS_OF_THE_BED if per_spacing > 1 else "",
         )
     for radii in (2, 3, 4):
         yield Check(
@@ -312,7 +320,7 @@ def _flow(case: Case) -> Flow:
             friction=float(mean("pressure_gradient_friction")),
             solids=float(mean("pressure_gradient_solids")),
             rubbing=-float(mean("wall_force")[0]) / volume,
-            lift=float(mean("drag_force")[2]) / (weight * volume),
+            lift=float(mean("drag_force")[2]) / (weight * volume) if weight else 0.0,
             weight=weight,
             velocity=float(mean("solids_mean_velocity")),
             exchange_error=float(numbers["exchange_error"].max()),
