@@ -176,11 +176,11 @@ Real Solids::longest_step() const noexcept {
 
 AdvanceReport Solids::advance(Real dt, std::size_t steps) {
     require(dt > 0, "advance: dt must be > 0 s");
-    require(!lubrication_ || dt <= longest_step() * (1 + 1e-9),
-            "advance: dt = " + std::to_string(1e6 * dt) +
-                "e-6 s must be <= " + std::to_string(1e6 * longest_step()) +
-                "e-6 s, half the time in which lubrication slows a solid at its least_gap; take "
-                "shorter steps or a wider least_gap");
+    require(
+        !lubrication_ || dt <= longest_step() * (1 + 1e-9),
+        "advance: dt must be <= " + std::to_string(1e6 * longest_step()) +
+            "e-6 s, half the time in which lubrication slows a solid at its least_gap, and is " +
+            std::to_string(1e6 * dt) + "e-6 s; take shorter steps or a wider least_gap");
     AdvanceReport report;
     for (Block& block : blocks_) block.largest_overlap = 0;
     for (std::size_t step = 0; step < steps; ++step) {
