@@ -164,6 +164,18 @@ def test_an_exchange_that_would_be_noise_is_refused(solids, radius, said):
     make_plan(narrow.with_(fidelity={"coupling": "one-way"}))
 
 
+def test_solids_that_stir_a_liquid_at_rest_bring_eddies_into_the_plan():
+    plan = make_plan(case(liquid={"model": "lagrangian", "bulk_velocity": 0.0}))
+    assert "mixing length" in reason(plan, "AdvanceLiquid")
+    assert "the solids stir the liquid" in reason(plan, "AdvanceLiquid")
+    assert "turbulence" not in names(plan.left_out)
+    held = make_plan(
+        case(liquid={"model": "lagrangian", "bulk_velocity": 0.0}, solids={"held": True})
+    )
+    assert "laminar" in reason(held, "AdvanceLiquid")
+    assert "turbulence" in names(held.left_out)
+
+
 def test_a_liquid_step_is_a_whole_number_of_turns_and_a_turn_of_solid_steps():
     plan = make_plan(case(fidelity={"level": "balanced", "coupling_step": 3e-4}))
     assert plan.turns_per_liquid_step > 1

@@ -284,9 +284,10 @@ def _flow(case: Case) -> str:
     model = turbulence(case)
     if model is None:
         return "laminar, no-slip walls"
-    chosen = (
-        "as the flow is turbulent" if case.fidelity.turbulence == "auto" else "as was asked for"
-    )
+    chosen = "as was asked for"
+    if case.fidelity.turbulence == "auto":
+        laminar = pipe_profile(case).laminar
+        chosen = "as the solids stir the liquid" if laminar else "as the flow is turbulent"
     return f"{model.replace('_', ' ')} and log-law wall function, {chosen}"
 
 
@@ -379,7 +380,7 @@ def _left_out(case: Case) -> Iterator[Planned]:
         yield Planned(name="liquid", reason="the case has no [liquid]: dry")
     elif liquid_model(case) == "profile":
         yield Planned(name="AdvanceLiquid", reason="the profile is prescribed, and steady")
-    elif pipe_profile(case).laminar:
+    elif turbulence(case) is None:
         yield Planned(name="turbulence", reason="the Reynolds number is below 2300")
     if solids is None:
         yield Planned(name="solids", reason="the case has no [solids]: clear liquid")
