@@ -2,7 +2,15 @@
 
 #include "core/check.hpp"
 
+#include <bit>
+
 namespace mpsdem::coupling {
+
+namespace {
+
+constexpr Lanes counting{0, 1, 2, 3};
+
+} // namespace
 
 void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> position) {
     require(points.position.size() == points.volume.size() && !points.position.empty(),
@@ -10,34 +18,60 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
     const Real reach = kernel_.radius, period = points.period;
     require(reach > 0 && (period == 0 || 2 * reach <= period),
             "Footprints: the smoothing radius must be > 0 m and at most half the period");
-    if (!grid_ || period != period_) grid_.emplace(reach, period);
-    period_ = period;
-    const neighbors::Cells cells(points.position, reach, period, 1);
-    grid_->sort(points.position, cells, order_, 1);
-    sorted_.resize(order_.size());
-    for (std::size_t k = 0; k < order_.size(); ++k) sorted_[k] = points.position[order_[k]];
+    const bool sorted = points.fixed && sorted_from_ == points.position.data() &&
+                        order_.size() == points.position.size() && period == period_;
+    if (sorted && std::ranges::equal(found_for_, position)) return;
+    if (!sorted) sort(points);
+    found_for_.clear();
 
     first_.assign(1, 0);
-    point_.clear();
-    weight_.clear();
+    std::size_t found = 0;
     for (const Vec3& x : position) {
-        Real total = 0;
-        grid_->around(cells.of(x), [&](Index begin, Index end, int image) {
-            const Vec3 seen{x.x + image * period, x.y, x.z};
-            for (Index k = begin; k < end; ++k) {
-                const Vec3 r = sorted_[k] - seen;
-                const Real square = dot(r, r);
-                if (square >= reach * reach) continue;
-                const Index i = order_[k];
-                point_.push_back(i);
-                weight_.push_back(points.volume[i] * kernel_(std::sqrt(square)));
-                total += weight_.back();
+        Lanes totals{};
+        grid_->around(cells_->of(x), [&](Index begin, Index end, int image) {
+            const Vector<Lanes> seen = broadcast(Vec3{x.x + image * period, x.y, x.z});
+            if (point_.size() < found + (end - begin)) {
+                point_.resize(2 * found + (end - begin));
+                weight_.resize(point_.size());
+            }
+            for (Index k = begin; k < end; k += lane_count) {
+                const Columns at = turned(row_[k], row_[k + 1], row_[k + 2], row_[k + 3]);
+                const Vector<Lanes> r = at.v - seen;
+                const Lanes square = dot(r, r);
+                const auto left = static_cast<Real>(end - k);
+                const LaneMask near = (square < reach * reach) & (counting < left);
+                unsigned hits = bits(near);
+                if (hits == 0) continue;
+                const Lanes weight = select(near, at.w * kernel_(sqrt(square)), Lanes{});
+                totals += weight;
+                for (; hits != 0; hits &= hits - 1) {
+                    const auto lane = static_cast<std::size_t>(std::countr_zero(hits));
+                    point_[found] = order_[k + lane];
+                    weight_[found] = weight[lane];
+                    ++found;
+                }
             }
         });
+        const Real total = sum(totals);
         require(total > 0, "Footprints: a solid has no liquid within the smoothing radius: raise "
                            "it, or make the liquid finer");
-        for (std::size_t k = first_.back(); k < weight_.size(); ++k) weight_[k] /= total;
-        first_.push_back(weight_.size());
+        for (std::size_t k = first_.back(); k < found; ++k) weight_[k] /= total;
+        first_.push_back(found);
+    }
+    found_for_.assign(position.begin(), position.end());
+}
+
+void Footprints::sort(const mps::LiquidPoints& points) {
+    const Real reach = kernel_.radius;
+    if (!grid_ || points.period != period_) grid_.emplace(reach, points.period);
+    period_ = points.period;
+    sorted_from_ = points.position.data();
+    cells_.emplace(points.position, reach, points.period, 1);
+    grid_->sort(points.position, *cells_, order_, 1);
+    row_.assign(order_.size() + lane_count, Lanes{});
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+        const Vec3& x = points.position[order_[k]];
+        row_[k] = Lanes{x.x, x.y, x.z, points.volume[order_[k]]};
     }
 }
 

@@ -38,14 +38,20 @@ public:
     }
 
 private:
+    /// Sort the points by cells.
+    void sort(const mps::LiquidPoints& points);
+
     SmoothingKernel kernel_;
     std::optional<neighbors::CellGrid> grid_;
-    Real period_ = 0; // [m]
+    std::optional<neighbors::Cells> cells_;
+    const Vec3* sorted_from_ = nullptr; // the points that stand sorted, where they are fixed
+    Real period_ = 0;                   // [m]
     std::vector<Index> order_;
+    std::vector<Vec3> found_for_; // [m] the solids
     std::vector<std::size_t> first_ = {0};
     std::vector<Index> point_;
     std::vector<Real> weight_; // [-]
-    std::vector<Vec3> sorted_; // [m] points by cells; memory of a search
+    std::vector<Lanes> row_;   // x, y, z, volume of the points by cells
 };
 
 } // namespace mpsdem::coupling

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/vec3.hpp"
+#include "core/lanes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,9 +16,10 @@ namespace mpsdem::coupling {
 struct SmoothingKernel {
     Real radius; // [m] r_s
 
-    [[nodiscard]] Real operator()(Real r) const noexcept {
-        const Real q = std::min(r / radius, Real{1});
-        const Real q4 = q * q * q * q;
+    template <class T>
+    [[nodiscard]] [[gnu::always_inline]] T operator()(T r) const noexcept {
+        const T q = select(r < radius, r / radius, T{} + 1);
+        const T q4 = q * q * q * q;
         return (4 * q - 5) * q4 + 1;
     }
 

@@ -30,6 +30,8 @@ Real share_inside(const SmoothingKernel& kernel, Real pipe_radius, Real distance
     return sum / whole;
 }
 
+constexpr Lanes counting{0, 1, 2, 3};
+
 Real sphere_volume(Real radius) noexcept {
     return 4. / 3 * std::numbers::pi * radius * radius * radius;
 }
@@ -85,16 +87,26 @@ std::size_t VoidFraction::at_solids(std::span<const Vec3> position, std::span<co
     std::vector<Index> order;
     grid.sort(center, order);
 
+    // Rows (x, y, z, volume) in the order of the cells; those of the padding weigh nothing.
+    std::vector<Lanes> row(order.size() + lane_count);
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const Vec3& x = center[order[k]];
+        row[k] = Lanes{x.x, x.y, x.z, sphere_volume(radius[order[k]])};
+    }
+
     parallel_for(order.size(), threads, [&](std::size_t k) {
         const Index i = order[k];
-        Real weighted = 0; // [m3]
+        Lanes sums{};
         grid.around(grid.cell(k), [&](Index first, Index last, int image) {
-            const Vec3 seen_from = center[i] + Vec3{image * period_, 0, 0};
-            for (Index m = first; m < last; ++m) {
-                const Index j = order[m];
-                weighted += kernel_(norm(seen_from - center[j])) * sphere_volume(radius[j]);
+            const Vector<Lanes> seen_from = broadcast(center[i] + Vec3{image * period_, 0, 0});
+            for (Index m = first; m < last; m += lane_count) {
+                const Columns other = turned(row[m], row[m + 1], row[m + 2], row[m + 3]);
+                const Lanes weighted = kernel_(norm(seen_from - other.v)) * other.w;
+                const auto left = static_cast<Real>(last - m);
+                sums += select(counting < left, weighted, Lanes{});
             }
         });
+        const Real weighted = sum(sums); // [m3]
         const Real in_bore =
             kernel_.integral() * share_in_bore(std::hypot(center[i].y, center[i].z));
         const Real all = weighted / in_bore;

@@ -11,6 +11,7 @@ struct LiquidPoints {
     std::span<const Vec3> position; // [m]
     std::span<const Real> volume;   // [m3] liquid and solids
     Real period;                    // [m] along x, 0 for none
+    bool fixed = false;             // whether they stay where they are from step to step
 };
 
 /// What solids do to a liquid at its points, one entry per point; the liquid is the continuous

@@ -280,6 +280,21 @@ def test_liquid_flows_over_a_bed_rather_than_through_it(water):
     assert abs(report.unexplained) < 0.02 * report.friction
 
 
+def test_liquid_deep_in_a_bed_creeps_beside_the_wall_as_it_does_within():
+    """The wall rubs on the fast liquid over the bed, and takes nothing from the liquid in it."""
+    liquid, exchange = Nodes(across=12), new_exchange()
+    solids = crowd(900, velocity=(0.0, 0.0, 0.0), spread=0.0, below=0.0)
+    solids.radius[:] = 0.006
+    solids.drag[:] = 2.0
+    for _ in range(120):
+        report = go(exchange, liquid, solids, 4e-3)
+    beta = solids.drag @ weights(liquid, solids) / liquid.volume
+    deep = liquid.position[:, 2] < -0.6 * RADIUS
+    beside = np.hypot(liquid.position[:, 1], liquid.position[:, 2]) > 0.8 * RADIUS
+    driven = liquid.velocity[:, 0] * beta / report.mean_gradient  # Darcy: 1
+    assert driven[deep & beside].mean() == pytest.approx(driven[deep & ~beside].mean(), rel=5e-3)
+
+
 @EVERY_LIQUID
 def test_solids_that_sink_press_the_liquid_up_beside_them(water):
     """Volume is kept: what goes down in a section must come up in it."""

@@ -1,7 +1,6 @@
 #include "mps/eulerian/liquid.hpp"
 
 #include "core/check.hpp"
-#include "core/parallel.hpp"
 #include "mps/eulerian/least_squares.hpp"
 #include "mps/eulerian/viscous.hpp"
 

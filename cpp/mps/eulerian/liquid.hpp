@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parallel.hpp"
 #include "linear/cross_section_solver.hpp"
 #include "mps/eulerian/carry_muscl.hpp"
 #include "mps/eulerian/carry_upwind.hpp"
@@ -137,6 +138,21 @@ private:
         Real dt;   // [s]
     };
 
+    /// Volume flux of liquid and solids over the bore, and what of it an impulse of 1 m/s along the
+    /// pipe, spread evenly over the bore, adds.
+    struct MixtureFlux {
+        Real velocity; // [m/s]
+        Real yield;    // [-]
+    };
+    /// Mean over the inner nodes of what `row` sums up over the stations of one.
+    template <class Row>
+    [[nodiscard]] Real interior_mean(const Row& row) const {
+        of_node_.resize(section_.interior_count());
+        parallel_for(of_node_.size(), numerics_.threads,
+                     [&](std::size_t i) { of_node_[i] = section_.area(i) * row(i); });
+        return total(of_node_) / (interior_area_ * static_cast<Real>(stations()));
+    }
+
     void transport();
     [[nodiscard]] Real allowed(bool with_solids, AdvanceReport& report);
     void predict(const Stage& stage);
@@ -148,10 +164,11 @@ private:
     void step_with_solids(Real dt, Loading& loading, Real elapsed, Real share,
                           AdvanceReport& report);
     void find_rates(Loaded& on);
+    void find_wall_drag(Loaded& on, std::size_t begin, std::size_t end) const;
     [[nodiscard]] Real stiffness(const Loaded& on, Real dt) const;
     [[nodiscard]] Real correct_with_solids(Loaded& on, Real dt);
     [[nodiscard]] Real settle_with_solids(Loaded& on, Real dt, std::span<const Vec3> owed);
-    [[nodiscard]] Real mixture_velocity(const Loaded& on) const;
+    [[nodiscard]] MixtureFlux mixture_flux(const Loaded& on) const;
     void find_volume_flux(const Loaded& on, VectorField& flux) const;
     void find_divergence(const VectorField& field, Field& result);
     [[nodiscard]] Real residual_divergence();
@@ -187,6 +204,8 @@ private:
     std::vector<Real> drag_;                 // [m3/s2] of the wall, by station
     std::vector<Real> flux_, viscous_force_; // by station
     std::vector<Real> of_chunk_;
+    mutable std::vector<Real> of_node_; // memory of a sum
+    mutable std::vector<MixtureFlux> of_wall_;
     std::optional<Loaded> loaded_;
     std::vector<Vec3> interior_position_, interior_velocity_; // [m], [m/s] as solids see them
     std::vector<Real> interior_volume_;                       // [m3]

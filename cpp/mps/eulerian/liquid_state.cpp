@@ -71,7 +71,7 @@ Real Liquid::flux(const Field& velocity, std::size_t nodes) const {
 }
 
 Real Liquid::bulk_velocity() const {
-    return loaded_ ? mixture_velocity(*loaded_) : flux(u_.x, section_.size()) / bore_area_;
+    return loaded_ ? mixture_flux(*loaded_).velocity : flux(u_.x, section_.size()) / bore_area_;
 }
 
 Real Liquid::mean_interior_velocity() const {

@@ -1,5 +1,4 @@
 #include "core/check.hpp"
-#include "core/parallel.hpp"
 #include "mps/eulerian/least_squares.hpp"
 #include "mps/eulerian/liquid.hpp"
 #include "mps/eulerian/viscous.hpp"
@@ -11,8 +10,6 @@
 namespace mpsdem::mps::eulerian {
 
 namespace {
-
-constexpr int hold_turns = 6; // [-] to hold the flux of the mixture to 1e-9 or so
 
 Vector<Lanes> load(const VectorField& f, std::size_t i, std::size_t k) noexcept {
     return {mpsdem::load(f.x[i] + k), mpsdem::load(f.y[i] + k), mpsdem::load(f.z[i] + k)};
@@ -83,21 +80,22 @@ LiquidPoints Liquid::points() {
             }
         }
     }
-    return {interior_position_, interior_volume_, pipe_length_};
+    return {interior_position_, interior_volume_, pipe_length_, true};
 }
 
 std::span<const Vec3> Liquid::interior_velocity() {
     interior_velocity_.resize(section_.interior_count() * stations());
-    for (std::size_t i = 0; i < section_.interior_count(); ++i)
+    parallel_for(section_.interior_count(), numerics_.threads, [&](std::size_t i) {
         for (std::size_t k = 0; k < stations(); ++k)
             interior_velocity_[i * stations() + k] = at(u_, i, k);
+    });
     return interior_velocity_;
 }
 
 /// Put the load on nodes, and on the walls what it is inward of them.
 void Liquid::take_load(const Load& load, Loaded& on) const {
     const std::size_t inner = section_.interior_count(), n = stations();
-    for (std::size_t i = 0; i < inner; ++i) {
+    parallel_for(inner, numerics_.threads, [&](std::size_t i) {
         for (std::size_t k = 0; k < n; ++k) {
             const std::size_t p = i * n + k;
             on.eps[i][k] = load.void_fraction[p];
@@ -105,8 +103,8 @@ void Liquid::take_load(const Load& load, Loaded& on) const {
             set(on.flux, i, k, load.solids_flux[p]);
             set(on.drag, i, k, (1 / density_) * load.drag_of_solids[p]);
         }
-    }
-    for (std::size_t w = 0; w < section_.wall_count(); ++w) {
+    });
+    parallel_for(section_.wall_count(), numerics_.threads, [&](std::size_t w) {
         const auto [node, share] = section_.inward(w);
         const Vec3 normal = section_.outward(inner + w);
         for (std::size_t k = 0; k < n; ++k) {
@@ -121,18 +119,16 @@ void Liquid::take_load(const Load& load, Loaded& on) const {
             set(on.drag, inner + w, k, inward_vector(on.drag));
             set(on.flux, inner + w, k, tangential(inward_vector(on.flux), normal));
         }
-    }
+    });
 }
 
 /// Mean of eps u_x over the inner nodes [m/s].
 Real Liquid::interior_momentum(const Loaded& on) const {
-    Real sum = 0;
-    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+    return interior_mean([&](std::size_t i) {
         Real row = 0;
         for (std::size_t k = 0; k < stations(); ++k) row += on.eps[i][k] * u_.x[i][k];
-        sum += section_.area(i) * row;
-    }
-    return sum / (interior_area_ * static_cast<Real>(stations()));
+        return row;
+    });
 }
 
 /// One substep; `transport` has left the convective acceleration in star_.
@@ -233,14 +229,12 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
 /// its pressure is known, each place yields as its own drag lets it. So the gradient of a bed that
 /// fills the pipe is found in a step or two, and one that fills a part of it is not overdone.
 Real Liquid::stiffness(const Loaded& on, Real dt) const {
-    Real open = 0;
-    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
-        Real row = 0;
-        for (std::size_t k = 0; k < stations(); ++k)
-            row += 1 / (1 + dt * on.beta[i][k] / on.eps[i][k]);
-        open += section_.area(i) * row;
-    }
-    return interior_area_ * static_cast<Real>(stations()) / open;
+    return 1 / interior_mean([&](std::size_t i) {
+               Real row = 0;
+               for (std::size_t k = 0; k < stations(); ++k)
+                   row += 1 / (1 + dt * on.beta[i][k] / on.eps[i][k]);
+               return row;
+           });
 }
 
 /// du/dt of the inner nodes into star_: convection stands there already.
@@ -248,25 +242,15 @@ void Liquid::find_rates(Loaded& on) {
     const std::size_t inner = section_.interior_count();
     on.wall_drag.assign(stations(), 0);
     convection_.assign(stations(), 0);
-    for (std::size_t i = 0; i < section_.size(); ++i) {
+    parallel_for(section_.size(), numerics_.threads, [&](std::size_t i) {
         for (std::size_t k = 0; k < stations(); ++k)
             on.eps_viscosity[i][k] = on.eps[i][k] * nu_t_[i][k];
         on.eps_viscosity.wrap(i, 0, stations());
-    }
-    if (flow_ == Flow::turbulent) { // the liquid's share of the wall's drag
-        for (std::size_t w = 0; w < section_.wall_count(); ++w) {
-            for (std::size_t k = 0; k < stations(); ++k) {
-                const Vec3 slip = at(u_, inner + w, k);
-                const Real speed = norm(slip), u_star = friction_velocity_[w][k];
-                if (speed > 0)
-                    on.wall_drag[k] -= section_.wall_share() * on.eps[inner + w][k] * u_star *
-                                       u_star * slip.x / speed;
-            }
-        }
-    }
+    });
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
         for (std::size_t k = begin; k < end; ++k) viscous_force_[k] = 0;
+        if (flow_ == Flow::turbulent) find_wall_drag(on, begin, end);
         for (std::size_t i = 0; i < inner; ++i) {
             const auto entries = laplacian_stencil_.of(i);
             const Real area = section_.area(i);
@@ -283,14 +267,41 @@ void Liquid::find_rates(Loaded& on) {
             }
         }
         if (flow_ == Flow::laminar) return;
-        for (const Index i : section_.layer()) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const Real missing =
-                    on.wall_drag[k] * interior_area_ / bore_area_ - viscous_force_[k];
-                star_.x[i][k] += missing / (layer_area_ * on.eps[i][k]);
-            }
+        // What the viscous terms lack of the wall's drag, where the wall drags: a bed has its share
+        // of the wall, but not of what the liquid over it rubs off there.
+        const std::span<const Index> layer = section_.layer();
+        for (std::size_t k = begin; k < end; ++k) {
+            const Real missing = on.wall_drag[k] * interior_area_ / bore_area_ - viscous_force_[k];
+            const auto rubbed = [&](std::size_t l) {
+                const auto [node, share] = section_.at_wall(l);
+                const auto shear = [&](std::size_t i) {
+                    const Real u_star = friction_velocity_[i - inner][k];
+                    return on.eps[i][k] * u_star * u_star;
+                };
+                return share[0] * shear(node[0]) + share[1] * shear(node[1]);
+            };
+            Real all = 0; // [m4/s2]
+            for (std::size_t l = 0; l < layer.size(); ++l)
+                all += section_.area(layer[l]) * rubbed(l);
+            if (all == 0) continue; // nothing moves along this wall
+            for (std::size_t l = 0; l < layer.size(); ++l)
+                star_.x[layer[l]][k] += missing * rubbed(l) / (all * on.eps[layer[l]][k]);
         }
     });
+}
+
+/// The liquid's share of the wall's drag, of the stations [begin, end).
+void Liquid::find_wall_drag(Loaded& on, std::size_t begin, std::size_t end) const {
+    const std::size_t inner = section_.interior_count();
+    for (std::size_t w = 0; w < section_.wall_count(); ++w) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Vec3 slip = at(u_, inner + w, k);
+            const Real speed = norm(slip), u_star = friction_velocity_[w][k];
+            if (speed > 0)
+                on.wall_drag[k] -=
+                    section_.wall_share() * on.eps[inner + w][k] * u_star * u_star * slip.x / speed;
+        }
+    }
 }
 
 /// From the volume flux in star_ and its pressure to the liquid's velocity, the walls' too. Returns
@@ -317,15 +328,11 @@ Real Liquid::correct_with_solids(Loaded& on, Real dt) {
         meet_wall(begin, end);
     });
     if (drive_.pressure_gradient) return 0; // it stands in the gradient already
-    Real held = 0;
-    // Some of it goes with the wall's nodes, too: what is left over after that is a fifth or less.
-    for (int turn = 0; turn < hold_turns; ++turn) {
-        const Real rest =
-            (drive_.bulk_velocity - mixture_velocity(on)) * bore_area_ / interior_area_;
-        for (std::size_t i = 0; i < inner; ++i)
-            for (std::size_t k = 0; k < stations(); ++k) u_.x[i][k] += rest / on.eps[i][k];
-        held += rest;
-    }
+    const MixtureFlux flux = mixture_flux(on);
+    const Real held = (drive_.bulk_velocity - flux.velocity) / flux.yield;
+    parallel_for(inner, numerics_.threads, [&](std::size_t i) {
+        for (std::size_t k = 0; k < stations(); ++k) u_.x[i][k] += held / on.eps[i][k];
+    });
     return held;
 }
 
@@ -333,8 +340,7 @@ Real Liquid::correct_with_solids(Loaded& on, Real dt) {
 /// solids gave to the mean of eps u_x over the inner nodes [m/s2].
 Real Liquid::settle_with_solids(Loaded& on, Real dt, std::span<const Vec3> owed) {
     on.acceleration.resize(owed.size());
-    Real given = 0;
-    for (std::size_t i = 0; i < section_.interior_count(); ++i) {
+    const Real given = interior_mean([&](std::size_t i) {
         Real row = 0;
         for (std::size_t k = 0; k < stations(); ++k) {
             const std::size_t p = i * stations() + k;
@@ -344,12 +350,12 @@ Real Liquid::settle_with_solids(Loaded& on, Real dt, std::span<const Vec3> owed)
             set(u_, i, k, at(u_, i, k) + (1 / (density_ * eps)) * owed[p]);
             row += drag.x + owed[p].x / (density_ * dt);
         }
-        given += section_.area(i) * row;
-    }
+        return row;
+    });
     u_.x.wrap();
     u_.y.wrap();
     u_.z.wrap();
-    return given / (interior_area_ * static_cast<Real>(stations()));
+    return given;
 }
 
 /// eps u + s.
@@ -369,34 +375,39 @@ std::vector<Real> Liquid::void_fraction() const {
     return out;
 }
 
-Real Liquid::mixture_velocity(const Loaded& on) const {
+Liquid::MixtureFlux Liquid::mixture_flux(const Loaded& on) const {
     // The solids are spread over the inner nodes, which share the bore among them.
-    const std::size_t inner = section_.interior_count();
-    Real liquid = 0, solids = 0;
-    for (std::size_t i = 0; i < inner; ++i) {
-        Real row = 0;
-        for (std::size_t k = 0; k < stations(); ++k) row += on.eps[i][k] * u_.x[i][k];
-        liquid += section_.area(i) * row;
-        solids += section_.area(i) * total({on.flux.x[i], stations()});
-    }
+    const Real solids =
+        interior_mean([&](std::size_t i) { return total({on.flux.x[i], stations()}); });
+    MixtureFlux sum{interior_momentum(on) * interior_area_, interior_area_};
     // Where drag outweighs viscosity over a spacing, the wall slows less than half of it: what its
     // nodes stand for goes with the liquid inward of them, as in a packed bed.
-    for (std::size_t w = 0; w < section_.wall_count(); ++w) {
-        const std::size_t i = inner + w;
+    of_wall_.resize(section_.wall_count());
+    parallel_for(section_.wall_count(), numerics_.threads, [&](std::size_t w) {
+        const std::size_t i = section_.interior_count() + w;
         const auto [node, share] = section_.inward(w);
-        Real row = 0;
+        MixtureFlux row{};
         for (std::size_t k = 0; k < stations(); ++k) {
             const auto inward = [&](const Field& f) {
                 return share[0] * f[node[0]][k] + share[1] * f[node[1]][k];
             };
-            const Real spacing = section_.spacing();
-            const Real drag = on.beta[i][k] * spacing * spacing / (on.eps[i][k] * inward(nu_t_));
-            const Real u = u_.x[i][k];
-            row += on.eps[i][k] * (u + drag / (1 + drag) * (inward(u_.x) - u));
+            const Real eps = on.eps[i][k], spacing = section_.spacing();
+            const Real drag = on.beta[i][k] * spacing * spacing / (eps * inward(nu_t_));
+            const Real through = drag / (1 + drag), u = u_.x[i][k];
+            row.velocity += eps * (u + through * (inward(u_.x) - u));
+            row.yield +=
+                eps * through * (share[0] / on.eps[node[0]][k] + share[1] / on.eps[node[1]][k]);
         }
-        liquid += section_.area(i) * row;
+        of_wall_[w] = {section_.area(i) * row.velocity, section_.area(i) * row.yield};
+    });
+    MixtureFlux walls{};
+    for (const MixtureFlux& of_wall : of_wall_) {
+        walls.velocity += of_wall.velocity;
+        walls.yield += of_wall.yield;
     }
-    return (liquid / bore_area_ + solids / interior_area_) / static_cast<Real>(stations());
+    const auto n = static_cast<Real>(stations());
+    return {(sum.velocity + walls.velocity / n) / bore_area_ + solids,
+            (sum.yield + walls.yield / n) / bore_area_};
 }
 
 } // namespace mpsdem::mps::eulerian

@@ -41,7 +41,8 @@ from mpsdem.plan.scales import (
 )
 
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
-_SERIAL = 5000  # solids up to which threads cost more than they gain
+# Up to as many solids and particles, or nodes, threads cost more than they gain.
+_SERIAL, _SERIAL_NODES = 5000, 30_000
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
 # [s] exchange of one solid with one point of the liquid, once, and its memory
 _FOOTPRINT_TIME, _FOOTPRINT_BYTES = 5e-8, 24
@@ -159,6 +160,7 @@ def make_plan(case: Case) -> Plan:
     of_liquid = tuple(liquid_limits(case))
     liquid_steps = _whole(case.output.every / _shortest(of_liquid)) if of_liquid else 1
     turns = _whole(case.output.every / liquid_steps / _shortest(of_coupling))
+    threads = case.fidelity.threads or (_core.available_threads() if _is_large(case) else 1)
     steps_per_frame = liquid_steps * turns
     coupling_step = case.output.every / steps_per_frame
     substeps = _whole(coupling_step / _shortest(of_solids)) if of_solids else 0
@@ -168,8 +170,6 @@ def make_plan(case: Case) -> Plan:
         steps_per_frame=steps_per_frame,
         substeps=substeps,
     )
-    crowd = max(case.solids_count, particle_count(case))
-    threads = case.fidelity.threads or (1 if crowd < _SERIAL else _core.available_threads())
     return Plan(
         case=case,
         numbers=tuple(_numbers(case)),
@@ -189,6 +189,13 @@ def make_plan(case: Case) -> Plan:
         threads=threads,
         estimate=_estimate(case, clock, turns, threads),
         warnings=tuple(_warnings(case, speed)),
+    )
+
+
+def _is_large(case: Case) -> bool:
+    nodes = liquid_model(case) == "eulerian"
+    return case.solids_count >= _SERIAL or particle_count(case) >= (
+        _SERIAL_NODES if nodes else _SERIAL
     )
 
 
