@@ -32,13 +32,17 @@ SPRING = {"contact": "linear_spring"}
 ROLLING = {"rolling_friction": 0.05, "wall": {"rolling_friction": 0.1, "friction": 0.6}}
 
 
-def case(*, liquid=None, solids=(), coupling="one-way"):
+SHAKE = {"vibration": {"direction": [1.0, 1.0, 1.0], "amplitude": 0.005, "period": 0.1}}
+
+
+def case(*, liquid=None, solids=(), coupling="one-way", motion=()):
     """Solids thrown at the wall of a short pipe; the last frame stands at an odd time."""
     return Case(
         end_time=0.11,
         pipe={"radius": 0.05, "length": 0.4},
         liquid=liquid,
         solids=SOLIDS | dict(solids),
+        motion=dict(motion),
         fidelity={"level": "quick", "coupling_step": 0.002, "coupling": coupling},
         output={"every": 0.02, "figures": False},
     )
@@ -51,6 +55,10 @@ CASES = {
     "profile": case(liquid=WATER),
     "profile, linear spring": case(liquid=WATER, solids=SPRING),
     "profile, rolling friction": case(liquid=WATER, solids=ROLLING),
+    "profile, shaken": case(liquid=WATER, motion=SHAKE),
+    "lagrangian, two-way, shaken": case(
+        liquid=WATER | {"model": "lagrangian"}, coupling="two-way", motion=SHAKE
+    ),
     "profile, Schiller-Naumann": case(liquid=WATER, solids={"drag": "schiller_naumann"}),
     "clear liquid": case(liquid=WATER).with_(solids=None),
     "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),

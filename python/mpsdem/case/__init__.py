@@ -4,6 +4,7 @@ from mpsdem.case.case import Case, load_case
 from mpsdem.case.errors import CaseError, Problem
 from mpsdem.case.fidelity import Fidelity
 from mpsdem.case.liquid import Liquid
+from mpsdem.case.motion import Motion, Movement, Vibration
 from mpsdem.case.output import Output
 from mpsdem.case.pipe import Pipe
 from mpsdem.case.solids import (
@@ -29,6 +30,8 @@ __all__ = [
     "List",
     "Lognormal",
     "Material",
+    "Motion",
+    "Movement",
     "Output",
     "Pipe",
     "Problem",
@@ -36,6 +39,7 @@ __all__ = [
     "Sieve",
     "Solids",
     "Uniform",
+    "Vibration",
     "Wall",
     "load_case",
 ]

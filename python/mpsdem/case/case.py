@@ -12,6 +12,7 @@ from typing import Annotated, Any, Self
 from mpsdem.case.errors import CaseError, Problem
 from mpsdem.case.fidelity import Fidelity
 from mpsdem.case.liquid import Liquid
+from mpsdem.case.motion import Motion
 from mpsdem.case.output import Output
 from mpsdem.case.part import Part
 from mpsdem.case.pipe import Pipe
@@ -42,6 +43,8 @@ class Case(Part):
         What fills it; None for dry solids.
     solids : Solids, optional
         What is carried; None for clear liquid.
+    motion : Motion
+        How the pipe moves; at rest by default.
     fidelity : Fidelity
         Numerics; all else is nature.
     output : Output
@@ -59,12 +62,20 @@ class Case(Part):
     pipe: Pipe
     liquid: Liquid | None = None
     solids: Solids | None = None
+    motion: Motion = Motion()
     fidelity: Fidelity = Fidelity()
     output: Output = Output()
 
     @classmethod
-    def from_toml(cls, text: str) -> Self:
+    def from_toml(cls, text: str, folder: str | Path = ".") -> Self:
         """Read a case from TOML.
+
+        Parameters
+        ----------
+        text : str
+            The case.
+        folder : path-like
+            From which the paths of other files in it count.
 
         Raises
         ------
@@ -75,6 +86,9 @@ class Case(Part):
             table = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
             raise CaseError([Problem(rule=f"not valid TOML: {error}")]) from None
+        motion = table.get("motion")
+        if isinstance(motion, dict) and isinstance(motion.get("file"), str):
+            motion["file"] = str(Path(folder, motion["file"]))
         return cls(**table)
 
     def to_toml(self) -> str:
@@ -186,6 +200,7 @@ class Case(Part):
             yield from self._a_plate_without_its_liquid()
         if self.fidelity.coupling == "two-way":
             yield from self._a_coupling_that_cannot_be()
+        yield from self._a_motion_that_cannot_be()
         if self.solids is not None and self.solids.held and self.liquid is None:
             rule, remedy = "without a liquid nothing moves", "add [liquid], or leave it out"
             yield Problem(field="solids.held", value=True, rule=rule, remedy=remedy)
@@ -252,6 +267,33 @@ class Case(Part):
                 value=self.pipe.stroke,
                 unit="m",
                 rule=f"must be >= {2 * spacing:g} m, two particle spacings",
+            )
+
+    def _a_motion_that_cannot_be(self) -> Iterable[Problem]:
+        for i, part in enumerate(self.motion.vibration):
+            if part.mode % 2 and not self.pipe.has_plate:
+                yield Problem(
+                    field=f"motion.vibration[{i}].mode",
+                    value=part.mode,
+                    rule="must be even in a periodic pipe, whose outlet moves as its inlet does",
+                    remedy=f"take {part.mode - 1} or {part.mode + 1}",
+                )
+        times = self.motion.times
+        if times is not None and times[-1] < self.end_time:
+            yield Problem(
+                field="motion.times",
+                value=times[-1],
+                unit="s",
+                rule=f"must reach to {self.end_time:g} s, the end_time",
+                remedy="repeat the last place at a later time, if the pipe is to stay there",
+            )
+        if self.motion.moves_walls:
+            flexes = self.motion.flexes
+            yield Problem(
+                field="motion.vibration" if flexes else "motion.walls",
+                value=None if flexes else self.motion.walls,
+                rule="walls that move through the liquid are not computed yet",
+                remedy="take mode = 0" if flexes else "leave it out",
             )
 
     def _a_coupling_that_cannot_be(self) -> Iterable[Problem]:
@@ -370,7 +412,7 @@ def load_case(path: str | Path) -> Case:
     except UnicodeDecodeError:
         raise CaseError([Problem(rule="is not a text file in UTF-8")], str(path)) from None
     try:
-        return Case.from_toml(text)
+        return Case.from_toml(text, Path(path).parent)
     except CaseError as error:
         raise CaseError(error.problems, str(path)) from None
 

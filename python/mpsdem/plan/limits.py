@@ -23,10 +23,10 @@ from mpsdem.plan.scales import (
     pipe_profile,
     require_speed,
     response_time,
+    slip_speed,
     solids_of,
     spring_stiffness,
     stirring_speed,
-    terminal_velocity,
 )
 
 # A step given by the user may take this share of a time that it has to resolve [-]: the restitution
@@ -39,7 +39,11 @@ _VISCOUS_SHARE = 0.1  # [-] of spacing^2 / viscosity, as the liquid's own step t
 # [-] of the time in which a bed's drag acts on its liquid: from 1 on, what substeps foresee of the
 # liquid and what its pressure then does to it swing against each other
 _RESPONSE_SHARE = 0.8
+_PERIOD_SHARE = 0.05  # [-] of a period of the pipe, that a liquid which notices it may step over
 _COUPLING_SHARE = 0.1  # [-] of the times over which the forces on a solid change
+# A period of the pipe's motion is worth that much of such a time: a hundred steps follow it, and
+# less than twenty are refused.
+_PERIOD_WORTH = 0.1
 SOLID_RATE = 2e7  # solids x steps per second on one thread in a dense bed; in the open 1.4e8
 
 
@@ -142,12 +146,15 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
     scales = []
     if case.liquid is not None:
         diameter = case.solids.smallest_diameter
-        slip = max(abs(case.liquid.bulk_velocity), terminal_velocity(case))
+        slip = max(abs(case.liquid.bulk_velocity), slip_speed(case))
         relaxation = 1 / drag_rate(case, diameter=diameter, slip=slip)
         scales = [_Scale(name=f"the drag's relaxation time at {slip:.3g} m/s", time=relaxation)]
         if slip > 0:
             crossing = f"the time to cross a diameter at {slip:.3g} m/s"
             scales.append(_Scale(name=crossing, time=diameter / slip))
+    if math.isfinite(period := case.motion.shortest_period):
+        name = f"the pipe's shortest period of motion, {period:.3g} s"
+        scales.append(_Scale(name=name, time=period, worth=_PERIOD_WORTH))
     given = case.fidelity.coupling_step
     limits = _limits("coupling_step", given=given, share=_COUPLING_SHARE, scales=scales)
     return (*limits, every, prompt)
@@ -176,11 +183,16 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
             name += ", parted by the liquid itself at 0.45, for its solids"
         yield Limit(name=name, value=courant * spacing / on_axis)
     if (stirring := stirring_speed(case)) > 0:
-        name = f"{courant:g} of a settling solid's time to cross a spacing at {stirring:.3g} m/s"
+        moved = "settling" if case.motion.at_rest else "settling and shaken"
+        name = f"{courant:g} of a {moved} solid's time to cross a spacing at {stirring:.3g} m/s"
         yield Limit(name=name, value=courant * spacing / stirring)
     if math.isfinite(response := response_time(case)):
         name = f"{_RESPONSE_SHARE:g} of the time in which a bed brings its liquid to rest"
         yield Limit(name=name, value=_RESPONSE_SHARE * response)
+    period = case.motion.shortest_period
+    if math.isfinite(period) and (is_two_way(case) or case.motion.moves_walls):
+        name = f"{_PERIOD_SHARE:g} of the pipe's shortest period of motion, {period:.3g} s"
+        yield Limit(name=name, value=_PERIOD_SHARE * period)
     viscous = _VISCOUS_SHARE * spacing**2 / case.liquid.kinematic_viscosity
     yield Limit(name=f"{_VISCOUS_SHARE:g} of the viscous time of a spacing", value=viscous)
     if case.fidelity.liquid_step is not None:

@@ -29,6 +29,7 @@ from mpsdem.plan.scales import (
     impact_stokes,
     impacts,
     is_two_way,
+    lightness,
     liquid_model,
     mean_diameter,
     particle_count,
@@ -43,6 +44,8 @@ from mpsdem.plan.scales import (
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 # Up to as many solids and particles, or nodes, threads cost more than they gain.
 _SERIAL, _SERIAL_NODES = 5000, 30_000
+_FRAMES = 8  # of a period of motion, that show it
+_SERIAL = 5000  # solids up to which threads cost more than they gain
 _SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
 # [s] exchange of one solid with one point of the liquid, once, and its memory
 _FOOTPRINT_TIME, _FOOTPRINT_BYTES = 5e-8, 24
@@ -308,6 +311,8 @@ def _stages(case: Case, clock: Clock, turns: int) -> Iterator[Planned]:
             reason = f"{case.solids_count} solids, {solids.contact}: {clock.substeps} steps a turn"
             if has_lubrication(case):
                 reason += "; the liquid in narrow gaps damps impacts"
+            if not case.motion.at_rest:
+                reason += f"; {_frame(case)}"
             yield Planned(name="AdvanceSolids", reason=reason)
         elif not two_way:
             yield Planned(name="HoldSolids", reason="they take up the drag, and stay (solids.held)")
@@ -316,6 +321,17 @@ def _stages(case: Case, clock: Clock, turns: int) -> Iterator[Planned]:
         yield _liquid_stage(case)
     reason = f"{clock.frames + 1} frames, one every {clock.every:g} s"
     yield Planned(name="Record", reason=reason)
+
+
+def _frame(case: Case) -> str:
+    """In which frame the solids move, and why."""
+    body = "the pipe is shaken as one body, and all is seen from it: solids feel"
+    if case.liquid is None:
+        return f"{body} its acceleration as a force"
+    return (
+        f"{body} {lightness(case):.2g} of its acceleration as a force, as the pressure of the full "
+        "pipe balances the rest"
+    )
 
 
 def _liquid_stage(case: Case) -> Planned:
@@ -383,6 +399,7 @@ def _exchange_stage(case: Case, turns: int) -> Planned:
 
 def _left_out(case: Case) -> Iterator[Planned]:
     solids, liquid = case.solids, case.liquid
+    yield from _left_out_of_the_shaking(case)
     if liquid is None:
         yield Planned(name="liquid", reason="the case has no [liquid]: dry")
     elif liquid_model(case) == "profile":
@@ -405,6 +422,18 @@ def _left_out(case: Case) -> Iterator[Planned]:
             yield from _left_out_of_the_motion(case)
     if solids.rolling_friction == 0 == solids.at_wall.rolling_friction:
         yield Planned(name="rolling resistance", reason="solids.rolling_friction = 0")
+
+
+def _left_out_of_the_shaking(case: Case) -> Iterator[Planned]:
+    """What a pipe that is shaken as one body does without."""
+    if case.motion.at_rest:
+        yield Planned(name="motion", reason="the pipe is at rest")
+    elif case.liquid is not None:
+        reason = (
+            "a pipe that is full and shaken as one body moves no liquid in it: the pressure takes "
+            "up the shaking as it does gravity"
+        )
+        yield Planned(name="moving walls", reason=reason)
 
 
 def _why_one_way(case: Case) -> str:
@@ -470,6 +499,12 @@ def _wall_law_warnings(case: Case) -> Iterator[str]:
 
 def _warnings(case: Case, speed: float) -> Iterator[str]:
     solids, liquid = case.solids, case.liquid
+    period = case.motion.shortest_period
+    if _FRAMES * case.output.every > period:
+        yield (
+            f"a period of the pipe's motion, {period:.3g} s, has {period / case.output.every:.2g} "
+            f"frames: take output.every <= {period / _FRAMES:.3g} s to see it"
+        )
     if liquid is not None and liquid_model(case) == "lagrangian" and turbulence(case) is None:
         reynolds = abs(liquid.bulk_velocity) * 2 * case.pipe.radius / liquid.kinematic_viscosity
         if reynolds > _LIVELY:

@@ -221,10 +221,27 @@ def impact_speed(case: Case) -> float:
     # Against the wall, or against each other.
     start = float(max(np.linalg.norm(starts, axis=1).max(), np.linalg.norm(np.ptp(starts, axis=0))))
     if case.liquid is not None:
-        return max(start, abs(case.liquid.bulk_velocity), terminal_velocity(case))
+        carried = max(start, abs(case.liquid.bulk_velocity), terminal_velocity(case))
+        return carried + shaken_speed(case)
     drop = 2 * pipe.radius * math.cos(pipe.inclination)
     drop += pipe.length * abs(math.sin(pipe.inclination))
-    return math.hypot(start, math.sqrt(2 * case.gravity * drop))
+    return math.hypot(start, math.sqrt(2 * case.gravity * drop)) + shaken_speed(case)
+
+
+def shaken_speed(case: Case) -> float:
+    """Speed that the motion of the pipe gives to solids, seen from it [m/s]; 0 at rest.
+
+    That of solids without drag, which stay behind the pipe as far as their density differs from
+    that of the liquid.
+    """
+    if case.solids is None or case.solids.held:
+        return 0.0
+    return abs(lightness(case)) * case.motion.peak_speed
+
+
+def lightness(case: Case) -> float:
+    """Share of its weight that a solid has left in the liquid [-]; 1 in a dry case."""
+    return 1 - 1 / density_ratio(case)
 
 
 def liquid_model(case: Case) -> str | None:
@@ -348,7 +365,12 @@ def stirring_speed(case: Case) -> float:
     """Speed at which solids stir a liquid that feels them [m/s]; 0 where none do."""
     if not is_two_way(case) or solids_of(case).held:
         return 0.0
-    return terminal_velocity(case)
+    return slip_speed(case)
+
+
+def slip_speed(case: Case) -> float:
+    """Speed at which weight and shaking drive a solid through the liquid [m/s]."""
+    return terminal_velocity(case) + shaken_speed(case)
 
 
 def _stirred(case: Case) -> bool:

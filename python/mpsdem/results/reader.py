@@ -45,6 +45,10 @@ class Results:
 
     Notes
     -----
+    All is seen from the pipe: where that moves (`Case.motion`), positions count from its axis and
+    velocities from its own; `SolidsResults.laboratory_position` and `laboratory_velocity` give
+    those of the laboratory.
+
     Fields are read from the file where they are indexed, so results larger than the memory can be
     looked through frame by frame. Frames written after the opening are seen by opening again.
 
@@ -187,6 +191,40 @@ class SolidsResults:
         """Velocities of the centres, (frames, n, 3) [m/s]."""
         return Field(self._run, "solids/velocity")
 
+    def laboratory_position(self, frame: int) -> FloatArray:
+        """Centres as seen by someone who does not move with the pipe.
+
+        Parameters
+        ----------
+        frame : int
+            Which; -1 is the last.
+
+        Returns
+        -------
+        (n, 3) float64 ndarray
+            [m]; x wrapped before the pipe's displacement is added.
+        """
+        pipe = self._results.case.motion.at(self._results.time[frame])
+        position: FloatArray = self.position[frame] + pipe.displacement
+        return position
+
+    def laboratory_velocity(self, frame: int) -> FloatArray:
+        """Velocities of the centres as seen by someone who does not move with the pipe.
+
+        Parameters
+        ----------
+        frame : int
+            Which; -1 is the last.
+
+        Returns
+        -------
+        (n, 3) float64 ndarray
+            [m/s].
+        """
+        pipe = self._results.case.motion.at(self._results.time[frame])
+        velocity: FloatArray = self.velocity[frame] + pipe.velocity
+        return velocity
+
     @property
     def spin(self) -> Field:
         """Angular velocities, (frames, n, 3) [rad/s]."""
@@ -242,9 +280,9 @@ class LiquidResults:
     the axis, and those particles that the run recorded, which may be none.
 
     Their pressure p' leaves out what is known without computing: the mean gradient and the static
-    part. In a full rigid pipe a uniform acceleration such as gravity moves no liquid, whatever its
-    size; left in, it would ask the solver for a pressure many times that of the flow, and its error
-    would stir the liquid. `full_pressure` adds both again.
+    part. In a full rigid pipe a uniform acceleration such as gravity or shaking moves no liquid,
+    whatever its size; left in, it would ask the solver for a pressure many times that of the flow,
+    and its error would stir the liquid. `full_pressure` adds both again.
     """
 
     def __init__(self, results: Results) -> None:
@@ -330,7 +368,8 @@ class LiquidResults:
         Returns
         -------
         (m,) float64 ndarray
-            p' + rho g.x - G x [Pa], G the mean loss since the frame before. Zero is the mean of p'
+            p' + rho (g - a).x - G x [Pa], G the mean loss since the frame before, a the
+            acceleration of the pipe. Zero is the mean of p'
             on the axis at the inlet. It is not periodic: from the outlet to the inlet it jumps by
             what a pump gives.
         """
@@ -355,9 +394,10 @@ class LiquidResults:
 
     def _split_off(self, frame: int, position: FloatArray) -> FloatArray:
         """What the pressure at some positions, (n, 3) [m], was stored without [Pa]."""
-        case = self._results.case
+        case, time = self._results.case, self._results.time[frame]
         assert case.liquid is not None
-        per_metre = case.liquid.density * np.array(case.gravity_vector)
+        body = np.array(case.gravity_vector) - case.motion.at(time).acceleration
+        per_metre = case.liquid.density * body
         per_metre[0] -= self._results.pressure_gradient[frame]
         split_off: FloatArray = position @ per_metre
         return split_off

@@ -218,6 +218,7 @@ class ResultsWriter:
         with new_hdf5(self._draft) as file:
             file.attrs["format"] = FORMAT
             file.attrs["format_version"] = FORMAT_VERSION
+            file.attrs["frame_of_reference"] = "pipe"  # where it moves, all moves with it
             file["case"] = self._toml
             file["case"].attrs["description"] = "The case in TOML, every default written out"
             file.create_group("provenance").attrs.update(self._provenance)

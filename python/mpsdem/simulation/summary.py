@@ -266,13 +266,14 @@ def _liquid_momentum_error(plan: Plan, results: Results) -> float | None:
 
 
 def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float | None:
-    """What the solids gained, less what weight, liquid and walls gave them; None without walls."""
+    """What solids gained, less what weight, shaking, liquid and walls gave; None without walls."""
     case, liquid, solids = plan.case, plan.case.liquid, state.solids
     assert case.solids is not None
     mass = case.solids.density * 4 / 3 * math.pi * results.solids.radius**3
     gained = mass @ (solids.velocity - results.solids.velocity[0])
     lightness = 1 - (liquid.density if liquid else 0.0) / case.solids.density
-    weight = mass.sum() * lightness * gravity(case) * state.time
+    shaken = np.diff(case.motion.at(np.array([0.0, state.time])).velocity, axis=0)[0]
+    weight = mass.sum() * lightness * (gravity(case) * state.time - shaken)
     unexplained = gained - weight - state.drag_impulse - solids.wall_impulse
     friction = clear_gradient(case) * case.pipe.bore_volume * state.time
     of_walls = abs(friction) + float(np.linalg.norm(solids.wall_impulse))

@@ -111,11 +111,13 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
             case "AdvanceSolids", Solids() as solids, liquid:
                 displaced = liquid.density / solids.density if liquid else 0.0
                 yield AdvanceSolids(
-                    acceleration=np.tile((1 - displaced) * gravity(case), (case.solids_count, 1)),
+                    gravity=gravity(case),
+                    lightness=1 - displaced,
+                    motion=case.motion,
                     added_mass=ADDED_MASS * displaced if plan.added_mass else 0.0,
                     substeps=plan.clock.substeps,
                     dry=liquid is None,
-                    pipe_radius=pipe.radius,
+                    pipe=pipe,
                 )
             case "HoldSolids", _, _:
                 yield HoldSolids()
@@ -130,6 +132,7 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     writer=writer,
                     steps_per_frame=plan.clock.steps_per_frame,
                     pipe=pipe,
+                    motion=case.motion,
                     gravity=gravity(case),
                     solids_density=case.solids.density if case.solids else 0.0,
                     liquid_density=case.liquid.density if case.liquid else 0.0,

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mpsdem.case import Pipe
+from mpsdem.case import Motion, Pipe
 from mpsdem.liquids import section_count
 from mpsdem.results import ResultsWriter
 from mpsdem.stages.state import FloatArray, State, check
@@ -36,6 +36,7 @@ class Record:
     writer: ResultsWriter
     steps_per_frame: int
     pipe: Pipe
+    motion: Motion
     gravity: FloatArray  # (3,) [m/s2]
     solids_density: float  # [kg/m3]; 0 where there are none
     liquid_density: float  # [kg/m3]; 0 where there is none
@@ -56,6 +57,11 @@ class Record:
             self._split_gradient(state, diagnostics)
             diagnostics["liquid_flux"] = self._liquid_flux(state, diagnostics)
         self._energy(state, diagnostics, interval)
+        if not self.motion.at_rest:
+            pipe = self.motion.at(state.time)
+            diagnostics["pipe_displacement"] = pipe.displacement
+            diagnostics["pipe_velocity"] = pipe.velocity
+            diagnostics["pipe_acceleration"] = pipe.acceleration
         self.writer.append(state.time, solids=solids, liquid=liquid, diagnostics=diagnostics)
         state.frame_time = state.time
         for name in _SINCE_LAST_FRAME:
@@ -135,7 +141,7 @@ class Record:
         return flux - float(volume @ state.mean_velocity[:, 0]) / self.pipe.bore_volume
 
     def _energy(self, state: State, numbers: Fields, interval: float) -> None:
-        """What the loss of pressure puts in, and what of it is neither motion nor height."""
+        """What pressure and shaking put in, and what of it is neither motion nor height."""
         per_length = 0.0
         flux = np.asarray(numbers.get("bulk_velocity", 0.0)).item()
         energy = self._stored(state, numbers)
@@ -144,8 +150,14 @@ class Record:
             section = self.pipe.bore_volume / self.pipe.length
             per_length = mean_flux * section * np.asarray(numbers["pressure_gradient"]).item()
             numbers["power_input"] = per_length
+        shaking = 0.0
+        if state.population is not None and not self.motion.at_rest:
+            work = state.shaking_work - state.frame_shaking_work
+            shaking = work / interval / self.pipe.length if interval > 0 else 0.0
+            numbers["shaking_power"] = shaking
+            state.frame_shaking_work = state.shaking_work
         gained = (energy - state.frame_energy) / interval if interval > 0 else 0.0
-        numbers["dissipation"] = per_length - gained / self.pipe.length
+        numbers["dissipation"] = per_length + shaking - gained / self.pipe.length
         state.frame_energy, state.frame_flux = energy, flux
 
     def _stored(self, state: State, numbers: Fields) -> float:

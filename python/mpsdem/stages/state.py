@@ -71,12 +71,14 @@ class State:
         gave [-].
     liquid_volume_error : float
         Largest error since then of the liquid's volume, over that volume [-].
+    shaking_work : float
+        Work of the pipe's motion on the solids since the start, seen from the pipe [J].
     frame_time : float
         Time of the last frame [s].
     frame_drag_impulse, frame_wall_impulse : (3,) float64 ndarray
         Momentum that liquid and walls had given to all solids by then [N s].
-    frame_energy, frame_flux : float
-        Energy [J] and volume flux along the pipe [m/s] then.
+    frame_energy, frame_flux, frame_shaking_work : float
+        Energy [J], volume flux along the pipe [m/s] and work of its motion [J] then.
     """
 
     population: dem.Solids | None = None
@@ -99,11 +101,13 @@ class State:
     drags_outside: int = 0
     exchange_error: float = 0.0
     liquid_volume_error: float = 0.0
+    shaking_work: float = 0.0
     frame_time: float = 0.0
     frame_drag_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     frame_wall_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     frame_energy: float = 0.0
     frame_flux: float = 0.0
+    frame_shaking_work: float = 0.0
 
     @property
     def solids(self) -> dem.Solids:

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from mpsdem._core import coupling
+from mpsdem._core import coupling, dem
+from mpsdem.case import Motion, Pipe
 from mpsdem.plan import DragLaw
 from mpsdem.stages.state import FloatArray, SimulationDiverged, State, check
 
@@ -144,49 +145,74 @@ class DragForce:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdvanceSolids:
-    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps."""
+    """Move the solids by contacts, drag, gravity and buoyancy, in many small steps.
+
+    Seen from a pipe that is shaken as one body, its acceleration acts as gravity does: on solids in
+    a liquid with what buoyancy leaves of it. Over a step it is constant, of the same impulse.
+    """
 
     name: ClassVar[str] = "AdvanceSolids"
-    acceleration: FloatArray  # (n, 3), gravity less buoyancy [m/s2]
+    gravity: FloatArray  # (3,) [m/s2]
+    lightness: float  # share of its weight that a solid has left in the liquid [-]
+    motion: Motion
     added_mass: float  # over the mass of a solid [-]
     substeps: int
     dry: bool
-    pipe_radius: float
+    pipe: Pipe
 
     def __call__(self, state: State, dt: float) -> None:
         solids = state.solids
-        self._force(state)
+        shaking = np.zeros(3) if self.motion.at_rest else self._shaking(state.time, dt)
+        self._force(state, np.tile(self.lightness * self.gravity + shaking, (len(solids), 1)))
+        if not self.motion.at_rest:
+            before = _first_moment(solids, self.pipe.length)
         report = solids.advance(dt / self.substeps, self.substeps)
         if not report.finite:
-            check(state, self.pipe_radius)
+            check(state, self.pipe.radius)
+        if not self.motion.at_rest:
+            way = _first_moment(solids, self.pipe.length) - before
+            state.shaking_work += float(shaking @ way)
         if state.exchange is not None:
             state.liquid_velocity = solids.liquid_velocity
         state.drag_impulse = state.drag_impulse + solids.drag_impulse.sum(axis=0)
         state.largest_overlap = max(state.largest_overlap, report.largest_overlap)
 
-    def _force(self, state: State) -> None:
+    def _shaking(self, time: float, dt: float) -> FloatArray:
+        """Force of the motion on a solid over its mass, mean over the step that ends at `time`."""
+        before, after = self.motion.at(np.array([time - dt, time])).velocity
+        force: FloatArray = -self.lightness * (after - before) / dt
+        return force
+
+    def _force(self, state: State, acceleration: FloatArray) -> None:
         solids = state.solids
         if self.dry:
-            solids.set_forcing(acceleration=self.acceleration)
+            solids.set_forcing(acceleration=acceleration)
         elif state.exchange is None:
             solids.set_forcing(
-                acceleration=self.acceleration,
+                acceleration=acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
                 added_mass=self.added_mass,
             )
         else:
-            acceleration, relaxation = state.exchange.response(
+            of_liquid, relaxation = state.exchange.response(
                 drag=solids.mass * state.drag_rate, velocity=solids.velocity
             )
             solids.set_forcing(
-                acceleration=self.acceleration,
+                acceleration=acceleration,
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
-                liquid_acceleration=acceleration,
+                liquid_acceleration=of_liquid,
                 relaxation=relaxation,
                 added_mass=self.added_mass,
             )
+
+
+def _first_moment(solids: dem.Solids, period: float) -> FloatArray:
+    """Sum of mass and place, laps counted, (3,) [kg m]."""
+    moment: FloatArray = solids.mass @ solids.position
+    moment[0] += period * float(solids.mass @ solids.laps)
+    return moment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
