@@ -14,6 +14,7 @@ from rich.console import Console
 from mpsdem.validation import (
     drag,
     eulerian,
+    head_loss,
     impacts,
     particle_liquid,
     pipe,
@@ -31,6 +32,7 @@ CHECKS = collect(
     rolling.checks(),
     drag.checks(),
     pipe.checks(),
+    head_loss.checks(),
     particle_liquid.checks(),
     eulerian.checks(),
     push_plate.checks(),
