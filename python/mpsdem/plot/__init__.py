@@ -7,6 +7,7 @@ from mpsdem.plot.curves import (
     solids_velocity_over_height,
 )
 from mpsdem.plot.figures import save_figures
+from mpsdem.plot.head_loss import draw_head_loss
 from mpsdem.plot.liquid_curves import (
     liquid_velocity_profile,
     pressure_along_axis,
@@ -17,6 +18,7 @@ from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
 
 __all__ = [
     "cross_sections",
+    "draw_head_loss",
     "liquid_middle_plane",
     "liquid_sections",
     "liquid_velocity_profile",

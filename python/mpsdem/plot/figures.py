@@ -8,12 +8,14 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from mpsdem.analysis.head_loss import comparable
 from mpsdem.plot.curves import (
     positions_over_time,
     pressure_gradient_over_time,
     solids_fraction_over_height,
     solids_velocity_over_height,
 )
+from mpsdem.plot.head_loss import draw_head_loss
 from mpsdem.plot.liquid_curves import (
     liquid_velocity_profile,
     pressure_along_axis,
@@ -75,6 +77,8 @@ def _drawings(
     yield "velocity", lambda: solids_velocity_over_height(results, times)
     if "pressure_gradient" in results.diagnostics:
         yield "pressure_gradient", lambda: pressure_gradient_over_time(results)
+    if comparable(results):
+        yield "head_loss", lambda: draw_head_loss([results])
     if results.has_liquid and not results.liquid.is_prescribed:
         if results.liquid.has_particles:
             yield "liquid_sections", lambda: liquid_sections(results, times)

@@ -9,6 +9,7 @@ from mpsdem.analysis.head_loss.conveying import (
 )
 from mpsdem.analysis.head_loss.dhlldv import DHLLDV
 from mpsdem.analysis.head_loss.durand import DURAND_CONDOLIOS
+from mpsdem.analysis.head_loss.measured import Measured, comparable, measured
 from mpsdem.analysis.head_loss.newitt import NEWITT
 from mpsdem.analysis.head_loss.wilson import WILSON_STRATIFIED
 
@@ -22,8 +23,11 @@ __all__ = [
     "NEWITT",
     "WILSON_STRATIFIED",
     "Conveying",
+    "Measured",
     "Model",
     "Range",
+    "comparable",
     "hydraulic_gradient",
     "inclined_gradient",
+    "measured",
 ]
