@@ -7,6 +7,7 @@ import pytest
 
 from mpsdem.case import load_case
 from mpsdem.geometry import place_solids
+from mpsdem.validation import conveying
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -47,3 +48,13 @@ def test_the_horizontal_pipe_names_the_source_of_every_number():
 def test_dry_solids_and_clear_liquid_are_cases_too():
     assert load_case(CASES / "dry_collapse.toml").liquid is None
     assert load_case(CASES / "clear_liquid.toml").solids is None
+
+
+@pytest.mark.parametrize(
+    ("name", "scene"),
+    [("newitt_1inch", conveying.rig(2.0)), ("glass5mm_100mm", conveying.glass(3.0))],
+)
+def test_the_conveying_cases_are_those_that_are_validated(name, scene):
+    shipped = load_case(CASES / f"{name}.toml")
+    for part in ("pipe", "liquid", "solids", "end_time", "gravity"):
+        assert getattr(shipped, part) == getattr(scene, part)

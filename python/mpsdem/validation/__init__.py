@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from rich.console import Console
 
 from mpsdem.validation import (
+    conveying,
     drag,
     eulerian,
     head_loss,
@@ -37,6 +38,7 @@ CHECKS = collect(
     eulerian.checks(),
     push_plate.checks(),
     two_way.checks(),
+    conveying.checks(),
 )
 """All checks by their ids."""
 

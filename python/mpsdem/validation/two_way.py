@@ -36,6 +36,10 @@ _ROWS_OF_THE_BED = (
     "high, as its planes fall on the kernel's edge: 5 to 6 % of the drag; over 2 or 3 it does not"
 )
 
+RICHARDSON_ZAKI = Source(
+    cite="Richardson & Zaki (1954)",
+    reference="Trans. Inst. Chem. Eng. 32, 35-53, for solids of Newton's regime",
+)
 EQUILIBRIUM = Source(cite="balance of forces")
 NEWTON = Source(cite="Newton's third law")
 
@@ -139,6 +143,15 @@ def _riser(model: str) -> Iterator[Check]:
         relative=0.01,
         unit="weight",
         source=EQUILIBRIUM,
+    )
+    yield Check(
+        id=f"two-way/{model}/riser/slip",
+        claim="the solids lag by their hindered velocity of settling, the walls' share counted",
+        expected=1.0,
+        measure=_of(partial(_risen, model), _hindered_slip),
+        relative=0.15,
+        unit="v_t (1 - C)^1.38 10^(-d/D)",
+        source=RICHARDSON_ZAKI,
     )
 
 
@@ -520,6 +533,14 @@ def _risen(model: str) -> Flow:
             fidelity={"level": "quick"},
         )
     )
+
+
+def _hindered_slip(flow: Flow) -> float:
+    """Slip of the suspension of 5 mm in the mean over the bore, over what is expected of it [-]."""
+    concentration = flow.weight / ((GLASS - WATER) * GRAVITY)
+    slip = (1.0 - flow.velocity) / (1 - concentration)  # at a bulk velocity of 1 m/s
+    lone = 0.4729  # m/s, by the drag law
+    return slip / (lone * math.pow(1 - concentration, 1.38) * math.pow(10, -5 / 100))
 
 
 def _mixture_weight(flow: Flow) -> float:
