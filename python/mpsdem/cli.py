@@ -1,11 +1,11 @@
-"""The command line: `mpsdem run`, `resume`, `explain`, `report`, `validate`, `info`."""
+"""The command line: `mpsdem run`, `resume`, `explain`, `report`, `export`, `validate`, `info`."""
 
 from __future__ import annotations
 
 import logging
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
@@ -17,7 +17,13 @@ from rich.markup import escape
 from rich.table import Table
 
 from mpsdem.case import Case, CaseError, load_case
-from mpsdem.results import CheckpointError, OutputError, Results, ResultsError
+from mpsdem.results import (
+    CheckpointError,
+    MissingExtraError,
+    OutputError,
+    Results,
+    ResultsError,
+)
 
 if TYPE_CHECKING:
     from mpsdem.plan import Plan
@@ -34,6 +40,7 @@ _out = Console()
 _err = Console(stderr=True)
 
 Level = StrEnum("Level", ["quick", "balanced", "fine"])
+Format = StrEnum("Format", ["vtkhdf", "vtp", "vtu", "vtk"])
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE.toml", help="The case file.")]
 RunDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="Directory of a run.")]
@@ -116,6 +123,51 @@ def report(directory: RunDirectory) -> None:
 
 
 @app.command()
+def export(
+    directory: RunDirectory,
+    to: Annotated[
+        Format,
+        typer.Option(
+            "--to",
+            help="vtkhdf: one file of all frames. vtp: a file a frame and a .pvd that lists them; "
+            "needs pyvista. vtu, vtk: snapshots, the last frame by default; need meshio.",
+        ),
+    ] = Format.vtkhdf,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="OUT", help="Where to; by default DIR/export."),
+    ] = None,
+    times: Annotated[
+        str | None,
+        typer.Option(
+            "--times", metavar="T,T,...", help="Only the frames nearest to these times in seconds."
+        ),
+    ] = None,
+    every: Annotated[
+        int | None, typer.Option("--every", metavar="N", min=1, help="Only every Nth frame.")
+    ] = None,
+) -> None:
+    """Write solids and liquid for ParaView, as points with all their fields.
+
+    To see the solids as spheres, add a Glyph of type Sphere, radius 1, scaled by `radius`.
+    """
+    if times is not None and every is not None:
+        raise typer.BadParameter("leave out one of the two", param_hint="--times, --every")
+    with _plain_errors():
+        from mpsdem.results import export
+
+        with Results(directory) as results:
+            frames: Sequence[int] | None = None
+            if times is not None:
+                frames = results.frames_at(_numbers(times))
+            elif every is not None:
+                frames = range(0, results.time.size, every)
+            paths = export(results, output or directory / "export", to=to.value, frames=frames)
+        for path in paths:
+            _out.print(str(path), soft_wrap=True, markup=False, highlight=False)
+
+
+@app.command()
 def validate(
     ids: Annotated[
         list[str] | None, typer.Argument(metavar="[ID]...", help="Checks; all by default.")
@@ -151,7 +203,7 @@ def _plain_errors() -> Iterator[None]:
     except SimulationDiverged as error:
         _complain(error)
         raise typer.Exit(1) from None
-    except (CaseError, CheckpointError, OutputError, ResultsError) as error:
+    except (CaseError, CheckpointError, MissingExtraError, OutputError, ResultsError) as error:
         _complain(error)
         raise typer.Exit(2) from None
 
@@ -188,6 +240,14 @@ def _case(
         every = min(case.output.every, until) if until > 0 else case.output.every
         case = case.with_(end_time=until, output={"times": times, "every": every})
     return case.with_settings(settings or [])
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(number) for number in text.split(",")]
+    except ValueError:
+        rule = f"{text!r} must be numbers with commas between them, such as 0,2.5,5"
+        raise typer.BadParameter(rule, param_hint="--times") from None
 
 
 def _table(*headings: str) -> Table:

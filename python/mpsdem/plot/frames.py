@@ -8,7 +8,7 @@ from textwrap import shorten
 import numpy as np
 from numpy.typing import NDArray
 
-from mpsdem.results import Results, ResultsError
+from mpsdem.results import Results
 
 FloatArray = NDArray[np.float64]
 
@@ -37,11 +37,10 @@ def chosen_frames(results: Results, times: Sequence[float] | None = None) -> lis
     ResultsError
         If the run has no frames.
     """
-    if not results.time.size:
-        raise ResultsError(f"the run in {results.directory} has no frames yet")
     if times is None or not len(times):
-        times = [0.0, *(results.time[-1] / 2**k for k in range(_HALVINGS, -1, -1))]
-    return sorted({int(np.abs(results.time - time).argmin()) for time in times})
+        end = results.time[-1] if results.time.size else 0.0
+        times = [0.0, *(end / 2**k for k in range(_HALVINGS, -1, -1))]
+    return results.frames_at(times)
 
 
 def second_half(results: Results) -> list[int]:

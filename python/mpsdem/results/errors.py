@@ -17,3 +17,18 @@ class ResultsError(RuntimeError):
 
 class CheckpointError(RuntimeError):
     """A checkpoint cannot be continued from: absent, damaged, or of another case."""
+
+
+class MissingExtraError(RuntimeError):
+    """An optional package is not installed: the message names the command that installs it.
+
+    Parameters
+    ----------
+    what : str
+        What needs it.
+    package : str
+        Its name.
+    """
+
+    def __init__(self, what: str, package: str) -> None:
+        super().__init__(f"{what} needs {package}, which is not installed: pip install {package}")

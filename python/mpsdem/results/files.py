@@ -17,6 +17,8 @@ CHECKPOINT = "checkpoint.h5"
 SUMMARY = "summary.json"
 CASE = "case.toml"
 
+_SLACK = 1 << 18  # [bytes] for the bookkeeping of an HDF5 file between two reservations
+
 _REMEDY = {
     errno.ENOSPC: "the disk is full: free some space",
     errno.EDQUOT: "the disk quota is used up: free some space",
@@ -98,6 +100,28 @@ def _sync_directory(path: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
+
+
+def reserve(file: h5py.File, size: int, path: Path) -> None:
+    """Take disk space at the end of an open file before HDF5 needs it.
+
+    Parameters
+    ----------
+    file : h5py.File
+        Open for writing.
+    size : int
+        Of what will be written next [bytes].
+    path : Path
+        What the file is called in an error.
+
+    Raises
+    ------
+    OutputError
+        If there is not as much: HDF5 would crash on a full disk.
+    """
+    if hasattr(os, "posix_fallocate"):
+        with writing(path):
+            os.posix_fallocate(file.id.get_vfd_handle(), file.id.get_filesize(), size + _SLACK)
 
 
 @contextmanager

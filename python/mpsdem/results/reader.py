@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -63,6 +63,28 @@ class Results:
         self.directory = Path(directory)
         self._run = StoredRun(self.directory / RESULTS)
         self.time: FloatArray = self._run.read_frames("time")
+
+    def frames_at(self, times: Sequence[float]) -> list[int]:
+        """Frames nearest to some times.
+
+        Parameters
+        ----------
+        times : sequence of float
+            [s].
+
+        Returns
+        -------
+        list of int
+            Their numbers, each once, in order.
+
+        Raises
+        ------
+        ResultsError
+            If the run has no frames.
+        """
+        if not self.time.size:
+            raise ResultsError(f"the run in {self.directory} has no frames yet")
+        return sorted({int(np.abs(self.time - time).argmin()) for time in times})
 
     @property
     def has_solids(self) -> bool:

@@ -24,13 +24,13 @@ from mpsdem.results.files import (
     new_hdf5,
     output_error,
     reading,
+    reserve,
     write_atomically,
     writing,
 )
 from mpsdem.results.stored import FORMAT, FORMAT_VERSION, open_results
 
 _CHUNK = 1 << 16  # [bytes] far below HDF5's chunk cache, so that a chunk is filled in memory
-_SLACK = 1 << 18  # [bytes] for the file's own bookkeeping between two reservations
 
 
 class WritesToml(Protocol):
@@ -266,11 +266,7 @@ class ResultsWriter:
 
     def _reserve(self, size: int) -> None:
         assert self._file is not None
-        if not hasattr(os, "posix_fallocate"):
-            return
-        handle = self._file.id.get_vfd_handle()
-        with writing(self._path):
-            os.posix_fallocate(handle, self._file.id.get_filesize(), size + _SLACK)
+        reserve(self._file, size, self._path)
 
 
 def _by_path(**groups: Mapping[str, ArrayLike] | None) -> dict[str, np.ndarray | np.generic]:
