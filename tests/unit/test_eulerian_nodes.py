@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from scipy import sparse
+from scipy.sparse import linalg
 
 from mpsdem._core import linear, mps
 from mpsdem.geometry import node_layout
@@ -160,6 +162,27 @@ def test_the_direct_solver_agrees_with_a_dense_one():
     solution = linear.CrossSectionSolver(**problem).solve(b)
     for station in solution.T:
         assert station - station.mean() == pytest.approx(dense - dense.mean(), abs=1e-10)
+
+
+def test_the_direct_solver_agrees_with_a_factor_of_the_whole_pipe(nodes):
+    """LU of SuperLU: on rings the matrix is not symmetric, so that Cholesky has no say."""
+    problem = pressure_problem(nodes)
+    n, inner = problem["stations"], len(problem["interior"])
+    around = sparse.eye_array(n)
+    along = sparse.csr_array(np.roll(np.eye(n), 1, axis=1) + np.roll(np.eye(n), -1, axis=1))
+    on_inner = sparse.eye_array(inner, len(nodes.place))
+    matrix = sparse.vstack(
+        [
+            sparse.kron(sparse.csr_array(problem["interior"]), around)
+            + sparse.kron(on_inner, (along - 2 * around) / nodes.spacing**2),
+            sparse.kron(sparse.csr_array(problem["wall"]), around),
+        ]
+    ).tocsc()
+    p = np.random.default_rng(4).standard_normal(matrix.shape[0])
+    b = matrix @ p
+    whole = np.append(0.0, linalg.splu(matrix[1:, 1:]).solve(b[1:]))  # p is 0 at its first place
+    solution = linear.CrossSectionSolver(**problem).solve(b.reshape(-1, n)).ravel()
+    assert solution - solution[0] == pytest.approx(whole, abs=1e-9)
 
 
 def test_a_source_that_no_pressure_has_is_dropped_not_amplified(nodes):
