@@ -55,13 +55,13 @@ def test_a_ring_holds_of_a_sphere_what_random_points_say(distance):
     volume = ring_volume(np.array([distance]), np.array([0.01]), edges)[0]
     found, _ = np.histogram(np.hypot(*balls([distance, 0.0], 0.01).T), edges)
     share = volume / (4 / 3 * np.pi * 0.01**3)
-    np.testing.assert_allclose(share, found / found.sum(), atol=3e-3)
+    np.testing.assert_allclose(share, found / found.sum(), atol=6e-3)
 
 
 def test_a_sphere_about_the_axis_loses_its_bored_core():
     # Napkin ring: what is left of a sphere around a hole of height h is pi h^3 / 6.
     volume = ring_volume(np.array([0.0]), np.array([1.0]), np.array([0.0, 0.6, 1.0]))
-    assert volume[0, 1] == pytest.approx(np.pi * 1.6**3 / 6, rel=2e-3)
+    assert volume[0, 1] == pytest.approx(np.pi * 1.6**3 / 6, rel=6e-3)
 
 
 @settings(max_examples=50)

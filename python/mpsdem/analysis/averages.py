@@ -187,3 +187,50 @@ def _of_too_few(time: FloatArray, values: FloatArray) -> Average:
         samples=float(known),
         long_enough=False,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trend:
+    """How a series rises over a window of time.
+
+    Parameters
+    ----------
+    slope : float
+        In the unit of the series per second; NaN where fewer than three values are known.
+    error : float
+        Standard error of the slope, likewise.
+    """
+
+    slope: float
+    error: float
+
+    @property
+    def rises(self) -> bool:
+        """Whether the slope is positive by more than three errors."""
+        return self.slope > 3 * self.error
+
+
+def trend(time: FloatArray, values: FloatArray) -> Trend:
+    """Slope of the straight line through a series that is correlated in time.
+
+    Parameters
+    ----------
+    time : (n,) float64 ndarray
+        Times, rising and evenly spaced [s].
+    values : (n,) float64 ndarray
+        The series; NaN is left out.
+
+    Returns
+    -------
+    Trend
+        By least squares; the error is that of the mean of what the line leaves, over the standard
+        deviation of the times.
+    """
+    known = np.isfinite(values)
+    time, values = time[known], values[known]
+    if values.size < 3:
+        return Trend(slope=math.nan, error=math.nan)
+    middle = time - time.mean()
+    slope = float(middle @ values / (middle @ middle))
+    rest = time_average(time, values - slope * middle, window=(-math.inf, math.inf))
+    return Trend(slope=slope, error=rest.error / float(time.std()))
