@@ -65,6 +65,7 @@ def time_average(
     *,
     window: tuple[float, float] | None = None,
     period: float | None = None,
+    scale: float = 0.0,
 ) -> Average:
     """Mean of a series that is correlated in time, with its standard error.
 
@@ -79,6 +80,9 @@ def time_average(
     period : float, optional
         Of what drives the series [s]. The window is then cut at its start to whole periods, and
         blocks are whole periods.
+    scale : float
+        What counts as much, in the unit of the series: where it is larger than the mean, steady is
+        what stays within 0.1 % of it.
 
     Returns
     -------
@@ -135,7 +139,8 @@ def time_average(
     slack = (error / single) ** 2
     half = n // (2 * whole) * whole or n // 2
     drift = abs(float(values[:half].mean() - values[-half:].mean()))
-    steady = bool(np.ptp(values) <= _STEADY * abs(mean))
+    little = _STEADY * max(abs(mean), abs(scale))
+    steady = bool(np.ptp(values) <= little)
     return Average(
         mean=mean,
         error=error,
@@ -143,11 +148,7 @@ def time_average(
         window=span,
         samples=min(float(n), n / slack) if slack > 0 else float(n),
         long_enough=steady
-        or (
-            settled
-            and n >= _FEWEST_SAMPLES * slack
-            and drift <= max(_DRIFT * 2 * error, _STEADY * abs(mean))
-        ),
+        or (settled and n >= _FEWEST_SAMPLES * slack and drift <= max(_DRIFT * 2 * error, little)),
     )
 
 

@@ -110,7 +110,7 @@ def find_plug(
     Plug or None
         None where there is no plug.
     """
-    since = np.full(len(position), np.nan)
+    since = np.zeros(0)
     for frame, now in enumerate(time):
         since = stands_since(since, standing[frame], float(now))
         if (section := longest(since, float(now), lasting)) is not None:
@@ -128,12 +128,14 @@ def stands_since(since: FloatArray, standing: NDArray[np.bool_], now: float) -> 
     Parameters
     ----------
     since : (s,) float64 ndarray
-        The same at the time before [s].
+        The same at the time before [s]; empty at the first.
     standing : (s,) bool ndarray
         Where it is so now.
     now : float
         [s]
     """
+    if not since.size:
+        since = np.full(standing.shape, np.nan)
     return np.where(standing, np.where(np.isnan(since), now, since), np.nan)
 
 

@@ -30,6 +30,17 @@ def radius_edges(pipe_radius: float, bins: int) -> FloatArray:
     return np.linspace(0, pipe_radius, bins + 1)
 
 
+def station_count(pipe_radius: float, length: float, diameter: float) -> int:
+    """Equal sections of a pipe that are as long as its radius, and as the largest solid at least.
+
+    Parameters
+    ----------
+    pipe_radius, length, diameter : float
+        Of the bore, and of the largest solid [m].
+    """
+    return max(1, round(length / max(pipe_radius, diameter)))
+
+
 def insitu_concentration(radius: FloatArray, *, pipe_radius: float, length: float) -> float:
     """Volume of the solids over that of the bore [-].
 

@@ -17,6 +17,7 @@ from mpsdem.analysis.concentration import (
     insitu_concentration,
     radius_edges,
     solids_flux_along_pipe,
+    station_count,
     volume_fraction_along_pipe,
     volume_fraction_over_height,
     volume_fraction_over_radius,
@@ -224,7 +225,7 @@ class _Bore:
     def stations(self) -> int:
         """Sections along the pipe: as long as its radius, and as a solid at least."""
         pipe = self.case.pipe
-        return max(1, round(pipe.length / max(pipe.radius, 2 * float(self.radius.max()))))
+        return station_count(pipe.radius, pipe.length, 2 * float(self.radius.max()))
 
     @property
     def heights(self) -> FloatArray:

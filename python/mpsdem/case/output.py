@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from mpsdem.case.part import FromList, Part
 from mpsdem.case.units import Quantity, Whole
@@ -24,6 +24,9 @@ class Output(Part):
         as keep a frame below 10,000 of them.
     checkpoint_every : float, optional
         Simulated time between two checkpoints [s]; by default one a minute of wall clock.
+    on_plug : {"warn", "stop"}
+        What happens when solids fill a section of the pipe and stand still while the bulk flow goes
+        five diameters: the run goes on with a warning, or ends with the status "plug".
     """
 
     every: Annotated[float, Quantity("s", above=0.0)] = 0.1
@@ -33,3 +36,4 @@ class Output(Part):
     )
     liquid_stride: Annotated[int, Whole(at_least=0)] | None = None
     checkpoint_every: Annotated[float, Quantity("s", above=0.0)] | None = None
+    on_plug: Literal["warn", "stop"] = "warn"

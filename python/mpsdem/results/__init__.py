@@ -12,7 +12,7 @@ from mpsdem.results.export import export
 from mpsdem.results.lock import DirectoryLock
 from mpsdem.results.reader import Results
 from mpsdem.results.stored import Field
-from mpsdem.results.summary import SUMMARY_KEYS, write_summary
+from mpsdem.results.summary import SUMMARY_KEYS, write_report, write_summary
 from mpsdem.results.writer import ResultsWriter
 
 __all__ = [
@@ -30,5 +30,6 @@ __all__ = [
     "export",
     "read_checkpoint",
     "write_checkpoint",
+    "write_report",
     "write_summary",
 ]

@@ -15,6 +15,7 @@ from mpsdem.results.errors import OutputError
 RESULTS = "results.h5"
 CHECKPOINT = "checkpoint.h5"
 SUMMARY = "summary.json"
+REPORT = "report.json"
 CASE = "case.toml"
 
 _SLACK = 1 << 18  # [bytes] for the bookkeeping of an HDF5 file between two reservations

@@ -1,17 +1,18 @@
-"""`summary.json`: one run in about twenty numbers, for people, studies and tests."""
+"""`summary.json`, a run in about twenty numbers, and `report.json`, all that its fields tell."""
 
 from __future__ import annotations
 
 import json
 import math
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mpsdem.results.files import SUMMARY, write_atomically
+from mpsdem.results.files import REPORT, SUMMARY, write_atomically
 
 SUMMARY_KEYS = (
     "status",
@@ -69,8 +70,42 @@ def write_summary(
     if missing := [key for key in SUMMARY_KEYS if key not in values]:
         raise ValueError(f"the summary lacks {', '.join(missing)}")
     ordered = {key: values.pop(key) for key in SUMMARY_KEYS} | values | {"not_applicable": reasons}
-    text = json.dumps(_plain(ordered), indent=2, ensure_ascii=False, allow_nan=False)
-    write_atomically(Path(directory) / SUMMARY, (text + "\n").encode())
+    _write(Path(directory) / SUMMARY, ordered, indent=2)
+
+
+def write_report(directory: str | os.PathLike[str], report: Mapping[str, Any]) -> Path:
+    """Write ``DIRECTORY/report.json``, whole or not at all.
+
+    Parameters
+    ----------
+    directory : path-like
+        The run's output directory.
+    report : mapping
+        Nested values by name; what is not finite becomes null.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    path = Path(directory) / REPORT
+    _write(path, report, indent=1)
+    return path
+
+
+def _write(path: Path, values: Mapping[str, Any], *, indent: int) -> None:
+    text = json.dumps(_plain(values), indent=indent, ensure_ascii=False, allow_nan=False)
+    text = _NUMBERS.sub(lambda row: f"[{' '.join(row[1].split())}]", text)
+    write_atomically(path, (text + "\n").encode())
+
+
+# An array of numbers, which reads better in a line.
+_NUMBERS = re.compile(r"\[([^][{}\"]*)\]")
 
 
 def _plain(value: Any) -> Any:

@@ -25,6 +25,7 @@ from mpsdem.results import (
     write_checkpoint,
     write_summary,
 )
+from mpsdem.simulation.plug import watch_for_plug
 from mpsdem.simulation.summary import summarize
 from mpsdem.simulation.watch import (
     LOG,
@@ -117,7 +118,8 @@ class Simulation:
         Returns
         -------
         Results
-            What stands in the directory now.
+            What stands in the directory now. The status in their summary is "plug" if solids
+            blocked the pipe and the case says to stop then.
 
         Raises
         ------
@@ -149,15 +151,18 @@ class Simulation:
         state, writer, stopwatch = self._continue() if self._resumed else self._start()
         stages = tuple(build_stages(self.case, self.plan, writer))
         due = Due(self.case.output.checkpoint_every, now=state.time)
+        plugged = self.case.output.on_plug == "stop" and not math.isnan(state.plug_time)
         try:
             with writer, progress(state.time, clock.end_time, bar=bar) as show:
                 if state.step == 0:
                     self._begin(stages, state, stopwatch)
-                while state.step < clock.steps and not received:
+                while state.step < clock.steps and not received and not plugged:
                     state.step += 1
                     state.time = clock.time(state.step)
                     for stage in stages:
                         stage(state, clock.length(state.step))
+                    if state.step % clock.steps_per_frame == 0 and watch_for_plug(self.case, state):
+                        plugged = self.case.output.on_plug == "stop"
                     if due(state.time):
                         self._write_checkpoint(state, stopwatch)
                     show(state.time)
@@ -166,7 +171,8 @@ class Simulation:
             LOG.error("%s", error)
             self._write_summary("diverged", state, stopwatch)
             raise
-        self._write_summary("interrupted" if received else "finished", state, stopwatch)
+        ended = "interrupted" if received else "plug" if plugged else "finished"
+        self._write_summary(ended, state, stopwatch)
         return state.time
 
     def _start(self) -> tuple[State, ResultsWriter, Stopwatch]:

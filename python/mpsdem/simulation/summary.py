@@ -8,14 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from mpsdem.analysis import extent
+from mpsdem.analysis import Average, bed_height, extent, insitu_concentration, time_average
 from mpsdem.liquids import CLIPS, PLATE_COUNTS, NodeLiquid, ParticleLiquid
 from mpsdem.plan import COMPUTED, SOFT, Plan, clear_gradient, gravity, pipe_profile
-from mpsdem.results import Results
+from mpsdem.results import SUMMARY_KEYS, Results
 from mpsdem.stages import State
 
-# Share of the solids that lie in the bed, whole [-]; the rest is in motion above it.
-_BED_SHARE = 0.95
+_PARTS = ("pressure_gradient_friction", "pressure_gradient_solids")
+# What the summary averages over the second half of the run, where it has it.
+_AVERAGED = (
+    "bulk_velocity",
+    "pressure_gradient",
+    "pressure_gradient_friction",
+    "pressure_gradient_solids",
+    "power_input",
+    "dissipation",
+    "solids_mean_velocity",
+    "convection_error",
+    "pressure_iterations",
+)
 
 
 def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any], dict[str, str]]:
@@ -33,7 +44,9 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
     Returns
     -------
     values : dict
-        By name. Means are over the frames of the second half of the time.
+        By name. Means are over the frames of the second half of the time, whole periods of it where
+        the pipe moves; ``averages`` holds the error, the window and the number of independent
+        samples of each, and whether the run was long enough.
     not_applicable : dict
         Names that mean nothing here, each with the reason.
     """
@@ -49,6 +62,10 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
     values |= _of_liquid(plan, state, results) | _of_solids(plan, results)
     if plan.case.liquid is not None and plan.case.solids is not None:
         values |= _of_both(plan, results, values)
+    values["averages"] = _averages(plan, results, values)
+    if plan.case.solids is not None:
+        values["plug_time"] = None if math.isnan(state.plug_time) else state.plug_time
+        values["plug_position"] = None if math.isnan(state.plug_time) else state.plug_position
     errors = [error for error in _momentum_errors(plan, state, results) if error is not None]
     values["momentum_error"] = max(errors, default=None)
     values["warnings"] = [*plan.warnings, *_warnings(plan, values)]
@@ -73,6 +90,8 @@ _SOLIDS_KEYS = (
     "bed_height",
     "largest_overlap",
     "exchange_error",
+    "plug_time",
+    "plug_position",
 )
 # Share of the drags beyond the range of their law that is worth a warning [-].
 _FAR_OUTSIDE = 0.05
@@ -99,12 +118,26 @@ def _reasons(plan: Plan, values: dict[str, Any]) -> dict[str, str]:
         reasons |= dict.fromkeys((*_SOLIDS_KEYS, "coupling"), "no solids")
     elif plan.case.gravity == 0:
         reasons |= {"bed_height": "no gravity"}
+    if plan.case.solids is not None and values["plug_time"] is None:
+        reasons |= dict.fromkeys(("plug_time", "plug_position"), "no plug stood in the pipe")
     if values["momentum_error"] is None:
         reasons |= {"momentum_error": _no_ledger(plan)}
     return reasons
 
 
 def _warnings(plan: Plan, values: dict[str, Any]) -> Iterator[str]:
+    if (since := values.get("plug_time")) is not None:
+        yield (
+            f"solids stood still and filled the pipe at x = {values['plug_position']:.4g} m from "
+            f"{since:.4g} s on: a plug"
+        )
+    short = [name for name, of in values["averages"].items() if not of["long_enough"]]
+    if short := [name for name in short if name in SUMMARY_KEYS]:
+        yield (
+            f"the run is too short for the mean of {', '.join(short)}: the second half drifts or "
+            "holds fewer than 20 independent samples, and the error bars are too small; a later "
+            "end_time"
+        )
     if (overlap := values.get("largest_overlap", 0.0)) > SOFT:
         yield f"solids overlapped by up to {overlap:.0%} of their radius: contacts are too soft"
     if clipped := values.get("void_fraction_clipped"):
@@ -119,9 +152,46 @@ def _warnings(plan: Plan, values: dict[str, Any]) -> Iterator[str]:
         yield f"{outside:.0%} of the drags lie outside the range of {plan.case.solids.drag}"
 
 
+def _average(results: Results, name: str) -> Average:
+    recorded = results.diagnostics
+    period = getattr(getattr(results.case, "motion", None), "period", None)
+    # next to a velocity or a loss of pressure, a part of it may be as good as nothing
+    whole = {"solids_mean_velocity": "bulk_velocity", "convection_error": "pressure_gradient"}
+    whole |= dict.fromkeys(_PARTS, "pressure_gradient")
+    scale = np.abs(recorded[whole[name]]).mean() if whole.get(name) in recorded else 0.0
+    return time_average(results.time, recorded[name], period=period, scale=float(scale))
+
+
 def _mean(results: Results, name: str) -> float:
-    second_half = results.time >= results.time[-1] / 2
-    return float(results.diagnostics[name][second_half].mean())
+    return _average(results, name).mean
+
+
+def _averages(plan: Plan, results: Results, values: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Every mean of the summary with its error."""
+    found = {name: _average(results, name) for name in _AVERAGED if name in values}
+    for name, of in (
+        ("delivered_concentration", "solids_mean_velocity"),
+        ("friction_factor", _loss_of_friction(plan)),
+    ):
+        averaged = name != "friction_factor" or plan.liquid_model in COMPUTED
+        if averaged and values.get(name) is not None and found[of].mean != 0:
+            found[name] = found[of].times(values[name] / found[of].mean)
+    return {
+        name: {
+            "mean": average.mean,
+            "error": average.error,
+            "window": average.window,
+            "samples": average.samples,
+            "long_enough": average.long_enough,
+        }
+        for name, average in found.items()
+    }
+
+
+def _loss_of_friction(plan: Plan) -> str:
+    """Which loss the friction factor tells of: with solids the loss is theirs too."""
+    alone = plan.case.solids is None
+    return "pressure_gradient" if alone else "pressure_gradient_friction"
 
 
 def _sum(results: Results, name: str) -> int:
@@ -151,9 +221,7 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
             values |= _of_nodes(state.liquid, results)
         velocity = values["bulk_velocity"]
         if velocity != 0:
-            # with solids the loss is theirs too, without any the whole of it is the wall's
-            alone = case.solids is None
-            loss = values["pressure_gradient" if alone else "pressure_gradient_friction"]
+            loss = values[_loss_of_friction(plan)]
             dynamic = liquid.density * velocity * abs(velocity) / 2
             values["friction_factor"] = loss * 2 * case.pipe.radius / dynamic
     return values
@@ -192,15 +260,12 @@ def _of_solids(plan: Plan, results: Results) -> dict[str, Any]:
     return {
         "solids_mean_velocity": _mean(results, "solids_mean_velocity"),
         "solids_front_position": float(extent(unwrapped[None]).front[0]),
-        "insitu_concentration": _concentration(plan, results),
-        "bed_height": float(np.quantile(z + radius, _BED_SHARE) + case.pipe.radius),
+        "insitu_concentration": insitu_concentration(
+            radius, pipe_radius=case.pipe.radius, length=case.pipe.length
+        ),
+        "bed_height": bed_height(z, radius, pipe_radius=case.pipe.radius),
         "largest_overlap": float(results.diagnostics["largest_overlap"].max()),
     }
-
-
-def _concentration(plan: Plan, results: Results) -> float:
-    """Volume of the solids over that of the bore [-]."""
-    return float(4 / 3 * math.pi * (results.solids.radius**3).sum() / plan.case.pipe.bore_volume)
 
 
 def _of_both(plan: Plan, results: Results, values: dict[str, Any]) -> dict[str, Any]:

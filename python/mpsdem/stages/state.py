@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
 
@@ -79,6 +80,10 @@ class State:
         Momentum that liquid and walls had given to all solids by then [N s].
     frame_energy, frame_flux, frame_shaking_work : float
         Energy [J], volume flux along the pipe [m/s] and work of its motion [J] then.
+    standing_since : (s,) float64 ndarray
+        Since when each section of the pipe has been full of solids at rest [s]; NaN where not.
+    plug_time, plug_position : float
+        Since when [s] and where [m] solids block the pipe; NaN while none do.
     """
 
     population: dem.Solids | None = None
@@ -108,6 +113,9 @@ class State:
     frame_energy: float = 0.0
     frame_flux: float = 0.0
     frame_shaking_work: float = 0.0
+    standing_since: FloatArray = field(default_factory=lambda: np.zeros(0))
+    plug_time: float = math.nan
+    plug_position: float = math.nan
 
     @property
     def solids(self) -> dem.Solids:
