@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import os
 import sys
@@ -9,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -78,7 +79,11 @@ def run(
         bool, typer.Option("--overwrite", help="Replace results that stand there.")
     ] = False,
 ) -> None:
-    """Run a case and draw its figures."""
+    """Run a case, analyse it and draw its figures.
+
+    Exit codes: 0 finished, 1 diverged, 2 bad input, 3 ended by a plug (where output.on_plug is
+    "stop"), 128 and the number of the signal if stopped by one.
+    """
     with _plain_errors():
         from mpsdem.simulation import Simulation
 
@@ -112,14 +117,15 @@ def explain(
 
 @app.command()
 def report(directory: RunDirectory) -> None:
-    """Draw the figures of a run again."""
+    """Analyse a run, finished or not: write its report.json, and draw its figures anew."""
     with _plain_errors():
-        from mpsdem.plot import save_figures
+        from mpsdem.plot import save_report
 
         with Results(directory) as results:
-            figures = save_figures(results, directory / "figures", times=results.case.output.times)
-        for figure in figures:
-            _out.print(str(figure), soft_wrap=True, markup=False, highlight=False)
+            report, *figures = save_report(results)
+        _show_report(json.loads(report.read_bytes()))
+        for path in (report, *figures):
+            _out.print(str(path), soft_wrap=True, markup=False, highlight=False)
 
 
 @app.command()
@@ -263,9 +269,11 @@ def _finish(simulation: Simulation) -> None:
         results = simulation.run()
     summary = results.summary
     table = _table()
+    table.add_column()
     for name, unit in _SHOWN.items():
         if (value := summary[name]) is not None:
-            table.add_row(name, f"{value:.4g} {unit}" if isinstance(value, float) else str(value))
+            shown = f"{value:.4g} {unit}" if isinstance(value, float) else str(value)
+            table.add_row(name, shown, _error_bar(summary["averages"].get(name)))
     _out.print(table)
     for warning in summary["warnings"]:
         _warn(warning)
@@ -273,6 +281,31 @@ def _finish(simulation: Simulation) -> None:
     if simulation.case.output.figures:
         figures = results.directory / "figures"
         _out.print(f"figures in {figures}", soft_wrap=True, markup=False, highlight=False)
+    if summary["status"] == "plug":
+        raise typer.Exit(3)
+
+
+def _error_bar(average: dict[str, Any] | None) -> str:
+    if average is None or average["error"] is None:
+        return ""
+    return f"[dim]± {average['error']:.2g}[/]"
+
+
+def _show_report(report: dict[str, Any]) -> None:
+    """The averages with their errors, and what they amount to."""
+    start, end = report["window"]
+    table = _table(f"mean, {start:.4g} to {end:.4g} s", "", "error", "")
+    for name, average in report["averages"].items():
+        if average["mean"] is None:
+            continue
+        error = "" if average["error"] is None else f"{average['error']:.2g}"
+        unit = "" if average["unit"] == "1" else average["unit"]
+        short = "" if average["long_enough"] else "[yellow]too short for a mean[/]"
+        table.add_row(name, f"{average['mean']:.4g} {unit}", error, short)
+    _out.print(table)
+    for name, told in (("regime", "regime"), ("blockage", "state")):
+        if name in report:
+            _out.print(f"{name}: {report[name][told]}")
 
 
 _SHOWN = {

@@ -61,6 +61,7 @@ from mpsdem.analysis.regime import (
     Regime,
     flow_regime,
 )
+from mpsdem.analysis.report import report
 from mpsdem.analysis.silhouette import (
     Silhouette,
     silhouette,
@@ -113,6 +114,7 @@ __all__ = [
     "longest",
     "radial_velocity",
     "radius_edges",
+    "report",
     "ring_volume",
     "silhouette",
     "slab_area",

@@ -16,7 +16,7 @@ class Output(Part):
     every : float
         Time between two frames of the results [s].
     figures : bool
-        Whether the run ends with its figures drawn.
+        Whether the run ends with its report written and its figures drawn.
     times : tuple of float, optional
         Times of the side views and cross-sections [s]; by default the program chooses.
     liquid_stride : int, optional

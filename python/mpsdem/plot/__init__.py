@@ -1,22 +1,20 @@
 """Figures of a run, with matplotlib; each function returns a figure and touches no settings."""
 
-from mpsdem.plot.curves import (
-    positions_over_time,
-    pressure_gradient_over_time,
-    solids_fraction_over_height,
-    solids_velocity_over_height,
-)
-from mpsdem.plot.figures import save_figures
+from mpsdem.plot.curves import positions_over_time, pressure_gradient_over_time
+from mpsdem.plot.figures import save_figures, save_report
 from mpsdem.plot.head_loss import draw_head_loss
+from mpsdem.plot.histories import along_the_pipe, transport_history
 from mpsdem.plot.liquid_curves import (
     liquid_velocity_profile,
     pressure_along_axis,
     solver_history,
 )
 from mpsdem.plot.liquid_scenes import liquid_middle_plane, liquid_sections
+from mpsdem.plot.profiles import solids_fraction, velocities, velocity_distribution
 from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
 
 __all__ = [
+    "along_the_pipe",
     "cross_sections",
     "draw_head_loss",
     "liquid_middle_plane",
@@ -26,9 +24,12 @@ __all__ = [
     "pressure_along_axis",
     "pressure_gradient_over_time",
     "save_figures",
+    "save_report",
     "side_view",
     "silhouettes",
-    "solids_fraction_over_height",
-    "solids_velocity_over_height",
+    "solids_fraction",
     "solver_history",
+    "transport_history",
+    "velocities",
+    "velocity_distribution",
 ]

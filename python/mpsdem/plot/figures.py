@@ -8,24 +8,48 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from mpsdem.analysis import Survey, report, survey
 from mpsdem.analysis.head_loss import comparable
-from mpsdem.plot.curves import (
-    positions_over_time,
-    pressure_gradient_over_time,
-    solids_fraction_over_height,
-    solids_velocity_over_height,
-)
+from mpsdem.plot.curves import positions_over_time, pressure_gradient_over_time
 from mpsdem.plot.head_loss import draw_head_loss
+from mpsdem.plot.histories import along_the_pipe, transport_history
 from mpsdem.plot.liquid_curves import (
     liquid_velocity_profile,
     pressure_along_axis,
     solver_history,
 )
 from mpsdem.plot.liquid_scenes import liquid_middle_plane, liquid_sections
+from mpsdem.plot.profiles import solids_fraction, velocities, velocity_distribution
 from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
 from mpsdem.plot.style import DOTS_PER_INCH
-from mpsdem.results import Results
+from mpsdem.results import Results, write_report
 from mpsdem.results.files import make_directory, writing
+
+
+def save_report(results: Results) -> list[Path]:
+    """Write ``report.json`` and all figures into the directory of a run.
+
+    Parameters
+    ----------
+    results : Results
+        The run; it may still go on.
+
+    Returns
+    -------
+    list of Path
+        The files, the report first.
+
+    Raises
+    ------
+    ResultsError
+        If the run has no frames.
+    OutputError
+        If they cannot be written.
+    """
+    found, times = survey(results), results.case.output.times
+    path = write_report(results.directory, report(results, found))
+    figures = save_figures(results, results.directory / "figures", times=times, found=found)
+    return [path, *figures]
 
 
 def save_figures(
@@ -33,6 +57,7 @@ def save_figures(
     directory: str | os.PathLike[str],
     *,
     times: Sequence[float] | None = None,
+    found: Survey | None = None,
 ) -> list[Path]:
     """Draw all figures that a run has the numbers for.
 
@@ -44,6 +69,8 @@ def save_figures(
         Where the PNG files go, created where absent.
     times : sequence of float, optional
         Times of side views and sections [s]; by default the start and successive halves of the run.
+    found : Survey, optional
+        The run's survey, if it is there already.
 
     Returns
     -------
@@ -57,7 +84,7 @@ def save_figures(
     """
     folder = make_directory(Path(directory))
     paths = []
-    for name, draw in _drawings(results, times):
+    for name, draw in _drawings(results, times, found or survey(results)):
         path = folder / f"{name}.png"
         with writing(path):
             draw().savefig(path, dpi=DOTS_PER_INCH, bbox_inches="tight")
@@ -66,17 +93,20 @@ def save_figures(
 
 
 def _drawings(
-    results: Results, times: Sequence[float] | None
+    results: Results, times: Sequence[float] | None, found: Survey
 ) -> Iterator[tuple[str, Callable[[], Figure]]]:
     if results.has_solids:
         yield "side_view", lambda: side_view(results, times)
         yield "cross_sections", lambda: cross_sections(results, times)
         yield "silhouette", lambda: silhouettes(results, times)
         yield "position", lambda: positions_over_time(results)
-        yield "volume_fraction", lambda: solids_fraction_over_height(results, times)
-    yield "velocity", lambda: solids_velocity_over_height(results, times)
+        yield "volume_fraction", lambda: solids_fraction(results, times, found)
+        yield "velocity_distribution", lambda: velocity_distribution(results, found)
+        yield "transport", lambda: transport_history(results, found)
+        yield "along_pipe", lambda: along_the_pipe(results, found)
+    yield "velocity", lambda: velocities(results, times, found)
     if "pressure_gradient" in results.diagnostics:
-        yield "pressure_gradient", lambda: pressure_gradient_over_time(results)
+        yield "pressure_gradient", lambda: pressure_gradient_over_time(results, found)
     if comparable(results):
         yield "head_loss", lambda: draw_head_loss([results])
     if results.has_liquid and not results.liquid.is_prescribed:

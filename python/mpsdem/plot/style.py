@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 SPEED_COLOURS = "viridis"
 PRESSURE_COLOURS = "RdBu_r"
+FRACTION_COLOURS = "Blues"
 INK = "#222222"  # text, walls
 FAINT = "#b8b8b8"  # walls of the bore, grid
 BORE = "#f3f6f9"  # inside of the bore
@@ -23,6 +24,8 @@ _STYLE = {
     "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
+    "figure.titlesize": 10.0,
+    "figure.titleweight": "bold",
     "axes.labelcolor": INK,
     "axes.edgecolor": INK,
     "axes.linewidth": 0.6,

@@ -108,7 +108,7 @@ class Simulation:
         return simulation
 
     def run(self, *, bar: bool = True) -> Results:
-        """Run to the end of the case, and leave results, summary and figures.
+        """Run to the end of the case, and leave results, summary, report and figures.
 
         Parameters
         ----------
@@ -140,9 +140,9 @@ class Simulation:
                 raise SimulationInterrupted(signal=received[0], time=time, directory=self.directory)
             results = Results(self.directory)
             if self.case.output.figures:
-                from mpsdem.plot import save_figures  # half a second, for those who want figures
+                from mpsdem.plot import save_report  # half a second, for those who want figures
 
-                save_figures(results, self.directory / "figures", times=self.case.output.times)
+                save_report(results)
             return results
 
     def _simulate(self, received: Sequence[int], *, bar: bool) -> float:
