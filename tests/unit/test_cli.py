@@ -10,6 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from synthetic_results import blank
 from typer.testing import CliRunner
 
 import mpsdem
@@ -138,13 +140,29 @@ def test_info_names_version_compiler_and_cholmod():
         assert word in said.stdout
 
 
-def test_report_draws_the_figures_of_a_run_again(case_file, tmp_path):
+def test_report_tells_the_means_with_their_errors_and_draws_the_figures(
+    case_file, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(Figure, "savefig", blank)
     type_in("run", case_file, "-o", tmp_path / "out")
     said = type_in("report", tmp_path / "out")
     assert said.exit_code == 0
-    drawn = [Path(line) for line in said.stdout.split()]
-    assert len(drawn) > 3
-    assert all(path.exists() for path in drawn)
+    for word in ("pressure_gradient", "error", "too short for a mean", "regime", "blockage"):
+        assert word in said.stdout
+    files = [Path(line) for line in said.stdout.splitlines() if line.startswith(str(tmp_path))]
+    assert files[0].name == "report.json"
+    assert len(files) > 4
+    assert all(path.exists() for path in files)
+
+
+def test_a_run_that_a_plug_ends_has_an_exit_code_of_its_own(case_file, tmp_path):
+    plug = ["pipe.length=0.08", "pipe.radius=0.02", "solids.count=95", "solids.friction=0.8"]
+    plug += ["liquid.bulk_velocity=0.2", "end_time=2", "output.every=0.2", "output.on_plug=stop"]
+    settings = [word for setting in plug for word in ("--set", setting)]
+    said = type_in("run", case_file, "-o", tmp_path / "out", *settings)
+    assert said.exit_code == 3
+    assert "plug" in said.stdout
+    assert Results(tmp_path / "out").summary["status"] == "plug"
 
 
 def start(*arguments):

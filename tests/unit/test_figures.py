@@ -7,6 +7,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.collections import EllipseCollection
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.patches import Circle
 from synthetic_results import (
@@ -16,6 +17,7 @@ from synthetic_results import (
     HEIGHTS,
     LAMINAR,
     TIMES,
+    blank,
     cluster,
     frame,
     mean_velocity,
@@ -33,8 +35,11 @@ FIGURES = [
     plot.cross_sections,
     plot.silhouettes,
     plot.positions_over_time,
-    plot.solids_velocity_over_height,
-    plot.solids_fraction_over_height,
+    plot.velocities,
+    plot.solids_fraction,
+    plot.velocity_distribution,
+    plot.transport_history,
+    plot.along_the_pipe,
     plot.pressure_gradient_over_time,
 ]
 LIQUID_FIGURES = [
@@ -60,6 +65,12 @@ def particles(tmp_path_factory):
     return Results(write_run(tmp_path_factory.mktemp("run"), CLEAR, liquid="particles"))
 
 
+@pytest.fixture
+def blank_figures(monkeypatch):
+    """Make files of figures without drawing what is in them, which takes seconds."""
+    monkeypatch.setattr(Figure, "savefig", blank)
+
+
 def with_picture(figure):
     return [axes for axes in figure.axes if axes.images]
 
@@ -81,6 +92,9 @@ def test_a_run_gets_all_its_figures(results, tmp_path):
         "position",
         "velocity",
         "volume_fraction",
+        "velocity_distribution",
+        "transport",
+        "along_pipe",
         "pressure_gradient",
     }
     for path in paths:
@@ -89,6 +103,7 @@ def test_a_run_gets_all_its_figures(results, tmp_path):
         assert height > 400, path
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_clear_liquid_gets_the_figures_of_the_liquid(tmp_path):
     results = Results(write_run(tmp_path, CLEAR))
     paths = save_figures(results, tmp_path / "figures")
@@ -102,13 +117,15 @@ def test_clear_liquid_gets_the_figures_of_the_liquid(tmp_path):
     [("prescribed", set()), ("particles", MEANS | PICTURES), ("unrecorded", MEANS)],
 )
 @pytest.mark.parametrize("case", [CASE, CLEAR], ids=["solids", "clear"])
+@pytest.mark.usefixtures("blank_figures")
 def test_a_run_of_one_frame_is_drawn(tmp_path, case, liquid, of_liquid):
     results = Results(write_run(tmp_path, case, TIMES[:1], liquid))
     drawn = {path.stem for path in save_figures(results, tmp_path / "figures")}
     assert {stem for stem in drawn if stem.startswith("liquid")} == of_liquid
-    assert len(drawn - of_liquid) == (2 if case is CLEAR else 7)
+    assert len(drawn - of_liquid) == (2 if case is CLEAR else 10)
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_a_dry_run_is_drawn(tmp_path):
     with open_writer(tmp_path, DRY) as writer:
         writer.append(0.0, solids=frame(0.0)["solids"], diagnostics={"contacts": 3})
@@ -322,7 +339,7 @@ def test_the_solver_history_leaves_out_what_no_step_has_made_yet(particles):
 
 def test_a_computed_liquid_has_its_own_velocity_at_every_height_and_time(tmp_path):
     results = Results(write_run(tmp_path, CASE, liquid="particles"))
-    of_solids, of_liquid = plot.solids_velocity_over_height(results, [0.0, 8.0]).axes
+    of_solids, of_liquid, over_radius = plot.velocities(results, [0.0, 8.0]).axes
     dashed = [line for line in of_liquid.lines if line.get_linestyle() == "--"]
     assert [line.get_label() for line in dashed] == ["0 s", "8 s"]
     for line in dashed:
@@ -330,6 +347,46 @@ def test_a_computed_liquid_has_its_own_velocity_at_every_height_and_time(tmp_pat
         np.testing.assert_allclose(line.get_xdata(), 1 + 0.1 * HEIGHTS)
     drawn = {line.get_label() for line in of_solids.lines}
     assert drawn >= {"0 s", "8 s"}
+    r, u = curve(over_radius, "liquid")
+    np.testing.assert_allclose(u, mean_velocity(r, CASE), rtol=0.02)
+
+
+def test_the_section_map_is_dark_where_the_solids_are(results):
+    section = plot.solids_fraction(results).axes[2]
+    (picture,) = section.collections
+    fraction = picture.get_array()  # rows go up
+    rows, columns = np.nonzero(fraction.filled(0) > 0.5 * fraction.max())
+    edges = np.linspace(-0.1, 0.1, fraction.shape[0] + 1)
+    assert edges[rows.min()] >= -0.062 - 0.01
+    assert edges[rows.max() + 1] <= 0.025 + 0.01  # cluster: z from -0.06 to 0.023 m
+    assert np.abs(edges[[columns.min(), columns.max() + 1]]).max() <= 0.0415 + 0.01
+    assert section.get_aspect() == 1.0
+
+
+def test_a_cluster_is_a_band_whose_slope_is_its_speed(tmp_path):
+    with open_writer(tmp_path) as writer:
+        for time in np.linspace(0.0, 2.0, 21):
+            fields = frame(0.0)
+            fields["solids"]["position"][:, 0] = np.linspace(0.5, 1.5, 64) + 0.5 * time
+            writer.append(time, **fields)
+    picture = plot.along_the_pipe(Results(tmp_path)).axes[0].collections[0]
+    fraction = np.asarray(picture.get_array())
+    station = (np.arange(fraction.shape[1]) + 0.5) * CASE.pipe.length / fraction.shape[1]
+    centre = fraction @ station / fraction.sum(axis=1)
+    np.testing.assert_allclose(centre - centre[0], 0.5 * np.linspace(0.0, 2.0, 21), atol=5e-3)
+
+
+def test_peaks_of_the_pressure_loss_are_marked_where_the_pipe_is_shaken(tmp_path):
+    shake = {"vibration": {"direction": "y", "amplitude": 0.01, "period": 2.0}}
+    shaken = Case(**CLEAR.model_dump() | {"motion": shake})
+    with open_writer(tmp_path, shaken) as writer:
+        for time in np.linspace(0.0, 8.0, 81):
+            loss = 80.0 + 10.0 * np.sin(np.pi * time)
+            writer.append(time, diagnostics={"pressure_gradient": loss})
+    (axes,) = plot.pressure_gradient_over_time(Results(tmp_path)).axes
+    lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+    np.testing.assert_allclose(lines["peaks"], [90.0, 90.0], rtol=1e-3)
+    np.testing.assert_allclose(lines["means of\nthe periods"], [80.0, 80.0], rtol=1e-9)
 
 
 def test_the_loss_of_pressure_is_drawn_with_its_parts(tmp_path):

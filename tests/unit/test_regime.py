@@ -87,6 +87,7 @@ REGIMES = [
     (Regime.HETEROGENEOUS, 0.05, 0.6, 0.4),
     (Regime.HOMOGENEOUS, 0.01, 0.9, 0.95),
     (Regime.HOMOGENEOUS, 0.0, np.nan, 1.0),
+    (Regime.HETEROGENEOUS, 0.0, np.nan, 3.0),
 ]
 
 

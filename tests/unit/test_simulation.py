@@ -6,6 +6,8 @@ import logging
 import fluids
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from synthetic_results import blank
 
 from mpsdem import Results, Simulation, SimulationDiverged
 from mpsdem.case import Case
@@ -237,6 +239,59 @@ def test_where_there_is_no_terminal_the_log_tells_how_far_the_run_is(tmp_path, c
     assert 5 <= len(told) <= 11
 
 
-def test_figures_are_drawn_where_the_case_wants_them(tmp_path):
+def test_report_and_figures_are_made_where_the_case_wants_them(tmp_path, monkeypatch):
+    monkeypatch.setattr(Figure, "savefig", blank)
     Simulation(case(output={"every": 0.02, "figures": True}), tmp_path).run()
     assert len(list((tmp_path / "figures").glob("*.png"))) > 3
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["status"] == "finished"
+
+
+def test_every_mean_of_the_summary_has_its_error_and_says_if_the_run_is_too_short(both, clear):
+    for summary in (both.summary, clear.summary):
+        averages = summary["averages"]
+        assert {"bulk_velocity", "pressure_gradient", "dissipation"} <= set(averages)
+        for name, average in averages.items():
+            assert average["mean"] == pytest.approx(summary[name])
+            assert average["window"] == pytest.approx([0.06, 0.1])
+    assert {"solids_mean_velocity", "delivered_concentration"} <= set(both.summary["averages"])
+    assert not both.summary["averages"]["solids_mean_velocity"]["long_enough"]
+    assert any("too short for the mean of" in warning for warning in both.summary["warnings"])
+    assert not any("too short" in warning for warning in clear.summary["warnings"])
+
+
+PLUG = {
+    "end_time": 2.0,
+    "pipe": {"radius": 0.02, "length": 0.08},
+    "liquid": WATER | {"bulk_velocity": 0.2},
+    "solids": BEADS | {"count": 95, "youngs_modulus": 1e6, "friction": 0.8},
+}
+
+
+def blocked(directory, on_plug):
+    """Solids that fill half of a narrow pipe, which is as many as lie there at rest."""
+    output = {"every": 0.2, "figures": False, "on_plug": on_plug}
+    return Simulation(case(**PLUG, output=output), directory).run()
+
+
+def test_a_pipe_that_solids_fill_and_stand_in_is_plugged_and_the_run_ends_if_told_to(tmp_path):
+    results = blocked(tmp_path, "stop")
+    summary = results.summary
+    assert summary["status"] == "plug"
+    assert summary["time"] == results.time[-1] < 2.0
+    assert summary["plug_time"] <= summary["time"] - 1.0  # five diameters at 0.2 m/s
+    assert 0 < summary["plug_position"] < 0.08
+    assert any("a plug" in warning for warning in summary["warnings"])
+    again = Simulation.resume(tmp_path).run()
+    assert (again.summary["status"], again.time[-1]) == ("plug", results.time[-1])
+
+
+def test_a_plug_is_only_a_warning_by_default(tmp_path):
+    summary = blocked(tmp_path, "warn").summary
+    assert (summary["status"], summary["time"]) == ("finished", 2.0)
+    assert 0.2 <= summary["plug_time"] <= 0.6
+
+
+def test_solids_that_are_carried_along_are_no_plug(both):
+    assert both.summary["plug_time"] is None
+    assert "no plug" in both.summary["not_applicable"]["plug_time"]

@@ -45,6 +45,7 @@ from mpsdem.analysis.partial_volumes import (
 from mpsdem.analysis.periods import (
     Periods,
     by_period,
+    period_of_motion,
 )
 from mpsdem.analysis.pipe_flow import (
     friction_velocity,
@@ -112,6 +113,7 @@ __all__ = [
     "insitu_concentration",
     "laminar_profile",
     "longest",
+    "period_of_motion",
     "radial_velocity",
     "radius_edges",
     "report",

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from mpsdem.case import Motion
+
 FloatArray = NDArray[np.float64]
 
 
@@ -63,3 +65,26 @@ def by_period(time: FloatArray, values: FloatArray, *, period: float, start: flo
         peak=np.array([inside.max() for _, inside in kept]),
         trough=np.array([inside.min() for _, inside in kept]),
     )
+
+
+def period_of_motion(motion: Motion) -> float | None:
+    """After what time the pipe moves again as before [s].
+
+    Parameters
+    ----------
+    motion : Motion
+        How it moves.
+
+    Returns
+    -------
+    float or None
+        The longest period of its vibrations, where all others fit into it a whole number of times;
+        None where they do not, where the pipe follows a table, and where it is at rest.
+    """
+    if motion.displacements is not None:
+        return None
+    periods = [part.resolved_period for part in motion.vibration if part.amplitude > 0]
+    longest = max(periods, default=None)
+    if longest is None or any(abs(longest / p - round(longest / p)) > 1e-6 for p in periods):
+        return None
+    return longest

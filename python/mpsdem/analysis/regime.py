@@ -16,8 +16,8 @@ CRITERION = (
     f"at least {_MOST:.0%} of the solids' volume in the bed (touching the wall below, or a chain "
     f"of solids down to it): stationary bed if the bed moves slower than {_AT_REST:g} of the bulk "
     f"velocity, else sliding bed; {_FEW:.0%} to {_MOST:.0%}: saltation; less: homogeneous if the "
-    f"upper half of the bore holds at least {_EVEN:g} times the solids of the lower half, else "
-    "heterogeneous"
+    f"upper half of the bore holds {_EVEN:g} to {1 / _EVEN:g} times the solids of the lower half, "
+    "else heterogeneous"
 )
 """The rule that `flow_regime` goes by, in words."""
 
@@ -94,7 +94,8 @@ def flow_regime(
     elif bed_share >= _FEW:
         regime = Regime.SALTATION
     else:
-        regime = Regime.HOMOGENEOUS if upper_over_lower >= _EVEN else Regime.HETEROGENEOUS
+        even = _EVEN <= upper_over_lower <= 1 / _EVEN
+        regime = Regime.HOMOGENEOUS if even else Regime.HETEROGENEOUS
     return FlowRegime(
         regime=regime,
         bed_share=bed_share,

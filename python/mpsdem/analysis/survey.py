@@ -20,7 +20,7 @@ from mpsdem.analysis.blockage import (
     standing_time,
 )
 from mpsdem.analysis.partial_volumes import slab_area
-from mpsdem.analysis.periods import Periods, by_period
+from mpsdem.analysis.periods import Periods, by_period, period_of_motion
 from mpsdem.analysis.regime import FlowRegime, flow_regime
 from mpsdem.analysis.solids_survey import (
     Profile,
@@ -153,7 +153,7 @@ def survey(results: Results, *, window: tuple[float, float] | None = None) -> Su
         raise ResultsError(f"the run in {results.directory} has no frames yet")
     case, end = results.case, float(results.time[-1])
     window = window or (end / 2, end)
-    period = getattr(getattr(case, "motion", None), "period", None)
+    period = period_of_motion(case.motion)
     solids = None
     if results.has_solids:
         solids = survey_solids(results, window=window, period=period)

@@ -8,7 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from mpsdem.analysis import Average, bed_height, extent, insitu_concentration, time_average
+from mpsdem.analysis import (
+    Average,
+    bed_height,
+    extent,
+    insitu_concentration,
+    period_of_motion,
+    time_average,
+)
 from mpsdem.liquids import CLIPS, PLATE_COUNTS, NodeLiquid, ParticleLiquid
 from mpsdem.plan import COMPUTED, SOFT, Plan, clear_gradient, gravity, pipe_profile
 from mpsdem.results import SUMMARY_KEYS, Results
@@ -154,7 +161,7 @@ def _warnings(plan: Plan, values: dict[str, Any]) -> Iterator[str]:
 
 def _average(results: Results, name: str) -> Average:
     recorded = results.diagnostics
-    period = getattr(getattr(results.case, "motion", None), "period", None)
+    period = period_of_motion(results.case.motion)
     # next to a velocity or a loss of pressure, a part of it may be as good as nothing
     whole = {"solids_mean_velocity": "bulk_velocity", "convection_error": "pressure_gradient"}
     whole |= dict.fromkeys(_PARTS, "pressure_gradient")
