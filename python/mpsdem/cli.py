@@ -114,10 +114,11 @@ def explain(
 def report(directory: RunDirectory) -> None:
     """Draw the figures of a run again."""
     with _plain_errors():
-        from mpsdem.plot import save_figures
+        from mpsdem.plot import save_figures, save_still
 
         with Results(directory) as results:
             figures = save_figures(results, directory / "figures", times=results.case.output.times)
+            figures += save_still(results, directory / "figures", times=results.case.output.times)
         for figure in figures:
             _out.print(str(figure), soft_wrap=True, markup=False, highlight=False)
 

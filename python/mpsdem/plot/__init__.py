@@ -15,6 +15,7 @@ from mpsdem.plot.liquid_curves import (
 )
 from mpsdem.plot.liquid_scenes import liquid_middle_plane, liquid_sections
 from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
+from mpsdem.plot.still import save_still, still_picture
 
 __all__ = [
     "cross_sections",
@@ -26,9 +27,11 @@ __all__ = [
     "pressure_along_axis",
     "pressure_gradient_over_time",
     "save_figures",
+    "save_still",
     "side_view",
     "silhouettes",
     "solids_fraction_over_height",
     "solids_velocity_over_height",
     "solver_history",
+    "still_picture",
 ]
