@@ -209,10 +209,12 @@ def _disc(results: Results, frame: int, piece: _Piece) -> tuple[FloatArray, Floa
     if not liquid.has_particles:
         return nothing
     cloud = liquid_cloud(results, frame)
-    place = np.column_stack([piece.from_its_middle(cloud.points[:, 0]), cloud.points[:, 1:]])
+    x = cloud.points[:, 0]
+    bore = (x >= 0) & (x < piece.period)  # a push plate moves liquid beyond either end
+    place = np.column_stack([piece.from_its_middle(x), cloud.points[:, 1:]])[bore]
     away, nearest = cKDTree(place).query(disc, k=min(_NEIGHBORS, len(place)))
     weight = 1 / (away**2 + (r[1] - r[0]) ** 2)
-    velocity = cloud.fields["velocity"][:, 0][nearest]
+    velocity = cloud.fields["velocity"][bore, 0][nearest]
     return disc, (weight * velocity).sum(axis=-1) / weight.sum(axis=-1)
 
 
