@@ -119,10 +119,11 @@ def explain(
 def report(directory: RunDirectory) -> None:
     """Analyse a run, finished or not: write its report.json, and draw its figures anew."""
     with _plain_errors():
-        from mpsdem.plot import save_report
+        from mpsdem.plot import save_report, save_still
 
         with Results(directory) as results:
             report, *figures = save_report(results)
+            figures += save_still(results, directory / "figures", times=results.case.output.times)
         _show_report(json.loads(report.read_bytes()))
         for path in (report, *figures):
             _out.print(str(path), soft_wrap=True, markup=False, highlight=False)

@@ -7,15 +7,19 @@ import pytest
 
 from mpsdem.case import load_case
 from mpsdem.geometry import place_solids
+from mpsdem.plan import make_plan
 from mpsdem.validation import conveying
 
 CASES = Path(__file__).parents[2] / "cases"
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_a_shipped_case_can_be_read_and_placed(path):
+def test_a_shipped_case_can_be_read_placed_and_planned(path):
     case = load_case(path)
     assert len(place_solids(case).radius) == case.solids_count
+    plan = make_plan(case)
+    assert plan.stages
+    assert plan.estimate.wall_seconds > 0
 
 
 def test_the_horizontal_pipe_has_the_numbers_of_the_paper():
@@ -31,8 +35,18 @@ def test_the_horizontal_pipe_has_the_numbers_of_the_paper():
     assert case.end_time == 34.0
 
 
-def test_the_horizontal_pipe_names_the_source_of_every_number():
-    text = (CASES / "horizontal_pipe.toml").read_text(encoding="utf-8")
+@pytest.mark.parametrize("name", ["paper000_horizontal", "paper000_push_plate"])
+def test_the_paper_computes_the_horizontal_pipe_with_particles_at_its_own_spacing(name):
+    case, scene = (load_case(CASES / f"{stem}.toml") for stem in (name, "horizontal_pipe"))
+    assert (case.liquid.model, case.fidelity.particle_spacing) == ("lagrangian", 0.0075)
+    assert (case.pipe.ends == "push-plate") == ("push" in name)
+    differ = {"title", "liquid.model", "fidelity.particle_spacing", "pipe.ends"}
+    assert {line.split(":")[0] for line in case.differences(scene)} <= differ
+
+
+@pytest.mark.parametrize("name", ["horizontal_pipe", "paper000_horizontal", "paper000_push_plate"])
+def test_a_case_of_the_first_paper_names_the_source_of_every_number(name):
+    text = (CASES / f"{name}.toml").read_text(encoding="utf-8")
     sources = r"#.*(paper|ours)"
     unsourced = [
         line

@@ -12,6 +12,7 @@ from mpsdem.plot.liquid_curves import (
 from mpsdem.plot.liquid_scenes import liquid_middle_plane, liquid_sections
 from mpsdem.plot.profiles import solids_fraction, velocities, velocity_distribution
 from mpsdem.plot.scenes import cross_sections, side_view, silhouettes
+from mpsdem.plot.still import save_still, still_picture
 
 __all__ = [
     "along_the_pipe",
@@ -25,10 +26,12 @@ __all__ = [
     "pressure_gradient_over_time",
     "save_figures",
     "save_report",
+    "save_still",
     "side_view",
     "silhouettes",
     "solids_fraction",
     "solver_history",
+    "still_picture",
     "transport_history",
     "velocities",
     "velocity_distribution",

@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 from rich.console import Console
@@ -129,7 +130,8 @@ class Due:
 def progress(start: float, end: float, *, bar: bool) -> Iterator[Callable[[float], None]]:
     """Give a function that is told the simulated time [s], and shows or logs how far the run is."""
     console = Console(stderr=True)
-    if bar and (console.is_terminal or console.is_jupyter):
+    # In a notebook rich draws with ipywidgets, and complains where they are not installed.
+    if bar and (console.is_terminal or (console.is_jupyter and find_spec("ipywidgets"))):
         with _bar(console, start, end) as show:
             yield show
     else:
