@@ -124,6 +124,9 @@ def test_newitts_regimes_meet_where_one_takes_over():
     assert newitt.newitt(slow) == newitt.newitt_bed(slow)
     assert newitt.newitt(fast) == newitt.newitt_heterogeneous(fast)
     assert newitt.newitt(slow) == pytest.approx(newitt.newitt(fast), rel=0.01)
+    at = replace(flow, bulk_velocity=newitt.homogeneous_limit(flow))
+    carried = newitt.newitt_heterogeneous(at) - at.clear_gradient
+    assert newitt.newitt_homogeneous(at) - at.clear_gradient == pytest.approx(carried, rel=0.02)
     beyond = replace(flow, bulk_velocity=1.01 * newitt.homogeneous_limit(flow))
     assert newitt.newitt(beyond) == newitt.newitt_homogeneous(beyond)
 
