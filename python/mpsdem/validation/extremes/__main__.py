@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from mpsdem.validation.extremes.rows import Row, rows
+from mpsdem.validation.extremes.rows import rows
 from mpsdem.validation.extremes.run import Came, run_rows
 from mpsdem.validation.extremes.table import markdown
 

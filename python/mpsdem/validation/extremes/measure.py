@@ -91,11 +91,10 @@ def _fastest(results: Results) -> float:
 
 
 def _clips(summary: Mapping[str, Any]) -> int:
-    of_liquid = summary.get("liquid_clips", {})
+    of_liquid: Mapping[str, int] = summary.get("liquid_clips", {})
     names = ("void_fraction_clipped", "liquid_void_fraction_clipped")
-    return sum(of_liquid.get(name, 0) for name in CLIPS) + sum(
-        summary.get(name, 0) for name in names
-    )
+    of_both: int = sum(summary.get(name, 0) for name in names)
+    return of_both + sum(of_liquid.get(name, 0) for name in CLIPS)
 
 
 def faults(plan: Plan, results: Results) -> Iterator[str]:
@@ -122,17 +121,15 @@ def faults(plan: Plan, results: Results) -> Iterator[str]:
         yield f"mass_error {mass:.2g}"
 
 
-def doubts(plan: Plan, results: Results, figures: Figures, *, speed: float = 0.0) -> Iterator[str]:
+def doubts(plan: Plan, figures: Figures, *, speed: float = 0.0) -> Iterator[str]:
     """Yield what is finite, and yet no physics.
 
     Parameters
     ----------
     plan : Plan
         What was run.
-    results : Results
-        What it left.
     figures : Figures
-        Of that run.
+        Of its run.
     speed : float
         Above which a velocity is absurd [m/s]; 0 for `ABSURD` times the fastest named.
     """

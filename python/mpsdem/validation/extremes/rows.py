@@ -125,7 +125,7 @@ def _solids() -> Iterator[Row]:
     ratios = {f"{r:g}": {"solids": {"density": 1000.0 * r}} for r in (0.1, 1.0, 20.0)}
     yield from _each("density ratio", ratios)
     packed = {"count": None, "volume_fraction": 0.6}
-    crowds = {
+    crowds: dict[str, Mapping[str, Any]] = {
         "0": {"solids": None},
         "0.3": {"solids": {"count": None, "volume_fraction": 0.3}},
         "0.6": {"solids": packed},

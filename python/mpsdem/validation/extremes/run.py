@@ -123,7 +123,7 @@ def _survived(row: Row, plan: Plan, results: Results, seconds: float) -> Came:
     return Came(
         row=row,
         outcome="survived",
-        doubts=(*faults(plan, results), *doubts(plan, results, figures, speed=row.speed)),
+        doubts=(*faults(plan, results), *doubts(plan, figures, speed=row.speed)),
         figures=asdict(figures),
         step_seconds=seconds / steps,
         memory=_memory(),
