@@ -150,11 +150,11 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
         else:
             values |= _of_nodes(state.liquid, results)
         velocity = values["bulk_velocity"]
-        if velocity != 0:
+        dynamic = liquid.density * velocity * abs(velocity) / 2
+        if dynamic != 0:
             # with solids the loss is theirs too, without any the whole of it is the wall's
             alone = case.solids is None
             loss = values["pressure_gradient" if alone else "pressure_gradient_friction"]
-            dynamic = liquid.density * velocity * abs(velocity) / 2
             values["friction_factor"] = loss * 2 * case.pipe.radius / dynamic
     return values
 

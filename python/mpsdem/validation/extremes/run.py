@@ -26,6 +26,7 @@ from mpsdem.validation.extremes.rows import Row
 TIME_LIMIT = 120.0  # [s] after which a row hangs
 _FRAMES = 10
 _EVER = 1e6  # [s] so long that no output limits a step
+_CROSSING = 0.1  # [-] of the time in which a solid crosses its diameter, as a liquid's turn is
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,6 +85,8 @@ def _timed(case: Case, steps: int) -> Case:
     """End the case after about so many steps of its liquid, with some frames on the way."""
     longest = make_plan(case.with_(end_time=_EVER, output={"every": _EVER}))
     step = (longest.liquid_step or longest.coupling_step).value
+    if case.liquid is None and case.solids is not None:  # nothing but the output limits its turns
+        step = _CROSSING * case.solids.smallest_diameter / longest.impact_speed
     frames = min(_FRAMES, steps)
     end = steps * step
     return case.with_(end_time=end, output={"every": end / frames})
