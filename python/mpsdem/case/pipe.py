@@ -10,6 +10,8 @@ from mpsdem.case.errors import Problem
 from mpsdem.case.part import Part
 from mpsdem.case.units import Quantity
 
+_ROUGHEST = 0.05  # [-] sand grains over the bore; Moody (1944), doi:10.1115/1.4018140
+
 
 class Pipe(Part):
     """Straight circular pipe along +x, its axis at y = z = 0.
@@ -63,6 +65,14 @@ class Pipe(Part):
         return self.radius + self.resolved_stroke / 2
 
     def problems(self) -> Iterable[Problem]:
+        if self.roughness > (roughest := _ROUGHEST * 2 * self.radius):
+            yield Problem(
+                field="roughness",
+                value=self.roughness,
+                unit="m",
+                rule=f"must be <= {roughest:g} m, a twentieth of the bore, as far as Colebrook's "
+                "formula reaches",
+            )
         if not self.has_plate:
             if self.stroke is not None:
                 yield Problem(

@@ -100,7 +100,7 @@ def _on_nodes(case: Case, liquid: Scene, plan: Plan) -> NodeLiquid:
         density=liquid.density,
         kinematic_viscosity=liquid.kinematic_viscosity,
         roughness=pipe.roughness,
-        turbulent=not profile.laminar,
+        turbulent=turbulence(case) is not None,
         bulk_velocity=liquid.bulk_velocity,
         pressure_gradient=liquid.pressure_gradient,
         convection=case.fidelity.convection,

@@ -14,13 +14,14 @@ from mpsdem.contacts import rayleigh_time
 from mpsdem.plan.scales import (
     COMPUTED,
     drag_rate,
+    fastest_flow,
+    fastest_profile,
     has_lubrication,
     impacts,
     is_two_way,
     liquid_model,
     lubrication_time,
     materials,
-    pipe_profile,
     require_speed,
     response_time,
     slip_speed,
@@ -146,7 +147,7 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
     scales = []
     if case.liquid is not None:
         diameter = case.solids.smallest_diameter
-        slip = max(abs(case.liquid.bulk_velocity), slip_speed(case))
+        slip = max(fastest_flow(case), slip_speed(case))
         relaxation = 1 / drag_rate(case, diameter=diameter, slip=slip)
         scales = [_Scale(name=f"the drag's relaxation time at {slip:.3g} m/s", time=relaxation)]
         if slip > 0:
@@ -174,7 +175,7 @@ def liquid_limits(case: Case) -> Iterator[Limit]:
         return
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     _require_solver(case)
-    profile = pipe_profile(case)
+    profile = fastest_profile(case)
     on_axis = abs(float(profile.velocity(np.zeros((1, 3)))[0, 0]))
     courant = case.fidelity.courant
     if on_axis > 0:

@@ -23,6 +23,8 @@ from mpsdem.plan.scales import (
     DILUTE,
     density_ratio,
     drag_rate,
+    fastest_flow,
+    fastest_profile,
     has_added_mass,
     has_lubrication,
     impact_speed,
@@ -215,8 +217,8 @@ def _numbers(case: Case) -> Iterator[Number]:
     pipe, liquid, solids = case.pipe, case.liquid, case.solids
     bore = 2 * pipe.radius
     if liquid is not None:
-        reynolds = abs(liquid.bulk_velocity) * bore / liquid.kinematic_viscosity
-        regime = "laminar" if pipe_profile(case).laminar else "turbulent"
+        reynolds = fastest_flow(case) * bore / liquid.kinematic_viscosity
+        regime = "laminar" if fastest_profile(case).laminar else "turbulent"
         yield Number(name="Reynolds number of the pipe", value=reynolds, unit="", meaning=regime)
     if solids is None:
         return
@@ -245,8 +247,8 @@ def _numbers(case: Case) -> Iterator[Number]:
         unit="",
         meaning="at the terminal velocity",
     )
-    slip = max(abs(liquid.bulk_velocity), settling)
-    stokes = abs(liquid.bulk_velocity) / bore / drag_rate(case, diameter=diameter, slip=slip)
+    slip = max(fastest_flow(case), settling)
+    stokes = fastest_flow(case) / bore / drag_rate(case, diameter=diameter, slip=slip)
     yield Number(
         name="Stokes number",
         value=stokes,
@@ -276,7 +278,7 @@ def _numbers(case: Case) -> Iterator[Number]:
             volume_fraction=fraction,
             gravity=case.gravity,
         )
-        moving = abs(liquid.bulk_velocity) > deposition
+        moving = fastest_flow(case) > deposition
         yield Number(
             name="deposition velocity",
             value=deposition,
@@ -296,7 +298,7 @@ def _flow(case: Case) -> str:
         return "laminar, no-slip walls"
     chosen = "as was asked for"
     if case.fidelity.turbulence == "auto":
-        laminar = pipe_profile(case).laminar
+        laminar = fastest_profile(case).laminar
         chosen = "as the solids stir the liquid" if laminar else "as the flow is turbulent"
     return f"{model.replace('_', ' ')} and log-law wall function, {chosen}"
 
@@ -485,7 +487,7 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
 
 
 def _wall_law_warnings(case: Case) -> Iterator[str]:
-    profile = pipe_profile(case)
+    profile = fastest_profile(case)
     assert case.liquid is not None
     spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
     plus = spacing * profile.friction_velocity / case.liquid.kinematic_viscosity
@@ -506,7 +508,7 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
             f"frames: take output.every <= {period / _FRAMES:.3g} s to see it"
         )
     if liquid is not None and liquid_model(case) == "lagrangian" and turbulence(case) is None:
-        reynolds = abs(liquid.bulk_velocity) * 2 * case.pipe.radius / liquid.kinematic_viscosity
+        reynolds = fastest_flow(case) * 2 * case.pipe.radius / liquid.kinematic_viscosity
         if reynolds > _LIVELY:
             yield (
                 f"at a Reynolds number of {reynolds:.0f} the particles do not damp a swirl, as "
@@ -518,7 +520,7 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
             "do not carry: friction comes out too low, 8 % at 16 spacings across the bore"
         )
     if liquid is not None:
-        reynolds = abs(liquid.bulk_velocity) * 2 * case.pipe.radius / liquid.kinematic_viscosity
+        reynolds = fastest_flow(case) * 2 * case.pipe.radius / liquid.kinematic_viscosity
         if 2300 <= reynolds <= 4000:
             yield f"the flow is intermittent at a Reynolds number of {reynolds:.0f}; no law holds"
         if liquid_model(case) == "eulerian":

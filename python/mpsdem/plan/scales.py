@@ -44,6 +44,7 @@ _LIGHT = 2.0
 # Stokes number of an impact below which the liquid takes a third and more of the rebound [-]: it
 # leaves exp(-35 / St) of the restitution. Legendre et al. (2005), doi:10.1063/1.2010527.
 _VISCOUS = 100.0
+_LAMINAR = 2300  # [-] Reynolds number of a pipe below which its flow is laminar
 LEAST_GAP = 3e-3  # [-] over the reduced radius, that lubrication takes rough surfaces to leave
 
 
@@ -221,7 +222,7 @@ def impact_speed(case: Case) -> float:
     # Against the wall, or against each other.
     start = float(max(np.linalg.norm(starts, axis=1).max(), np.linalg.norm(np.ptp(starts, axis=0))))
     if case.liquid is not None:
-        carried = max(start, abs(case.liquid.bulk_velocity), terminal_velocity(case))
+        carried = max(start, fastest_flow(case), terminal_velocity(case))
         return carried + shaken_speed(case)
     drop = 2 * pipe.radius * math.cos(pipe.inclination)
     drop += pipe.length * abs(math.sin(pipe.inclination))
@@ -348,7 +349,7 @@ def turbulence(case: Case) -> Literal["mixing_length", "smagorinsky"] | None:
             remedy="leave it out",
         )
         raise CaseError([problem])
-    if not pipe_profile(case).laminar or _stirred(case):
+    if not fastest_profile(case).laminar or _stirred(case):
         return "mixing_length" if asked == "auto" else asked
     if asked != "auto":
         problem = Problem(
@@ -405,11 +406,46 @@ def particle_count(case: Case) -> int:
 
 
 def pipe_profile(case: Case) -> mps.PipeProfile:
-    """Developed profile of the liquid in the pipe."""
+    """Developed profile of the liquid in the pipe, at the bulk velocity of the case."""
+    assert case.liquid is not None
+    return _profile(case, case.liquid.bulk_velocity)
+
+
+def fastest_profile(case: Case) -> mps.PipeProfile:
+    """Developed profile at the fastest flow that the liquid may come to."""
+    return _profile(case, fastest_flow(case))
+
+
+def fastest_flow(case: Case) -> float:
+    """Bulk speed of the case, or the one that a given pressure gradient leads to [m/s]."""
+    assert case.liquid is not None
+    return max(abs(case.liquid.bulk_velocity), _driven_flow(case))
+
+
+def _driven_flow(case: Case) -> float:
+    """Bulk speed at which the friction of the walls alone balances a given gradient [m/s].
+
+    Hagen-Poiseuille's, else Colebrook's, which is explicit where the gradient is known:
+    U = sqrt(2 D G / rho) / sqrt(f), Re sqrt(f) = D sqrt(2 D G / rho) / nu.
+    """
+    liquid, bore = case.liquid, 2 * case.pipe.radius
+    if liquid is None or not liquid.pressure_gradient:
+        return 0.0
+    force = abs(liquid.pressure_gradient) / liquid.density  # [m/s2]
+    laminar = force * bore**2 / (32 * liquid.kinematic_viscosity)
+    if laminar <= (fastest := _LAMINAR * liquid.kinematic_viscosity / bore):
+        return laminar
+    scale = math.sqrt(2 * bore * force)
+    smooth = 2.51 * liquid.kinematic_viscosity / (bore * scale)
+    turbulent = -2 * scale * math.log10(case.pipe.roughness / (3.7 * bore) + smooth)
+    return max(fastest, turbulent)
+
+
+def _profile(case: Case, bulk_velocity: float) -> mps.PipeProfile:
     assert case.liquid is not None
     return mps.PipeProfile(
         pipe_radius=case.pipe.radius,
-        bulk_velocity=case.liquid.bulk_velocity,
+        bulk_velocity=bulk_velocity,
         kinematic_viscosity=case.liquid.kinematic_viscosity,
         roughness=case.pipe.roughness,
     )

@@ -227,9 +227,9 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
         else:
             values |= _of_nodes(state.liquid, results)
         velocity = values["bulk_velocity"]
-        if velocity != 0:
+        dynamic = liquid.density * velocity * abs(velocity) / 2
+        if dynamic != 0:
             loss = values[_loss_of_friction(plan)]
-            dynamic = liquid.density * velocity * abs(velocity) / 2
             values["friction_factor"] = loss * 2 * case.pipe.radius / dynamic
     return values
 
