@@ -26,17 +26,18 @@ class Average:
     mean : float
         In the unit of the series; NaN where there are no values.
     error : float
-        Standard error of the mean, in the same unit; NaN where fewer than two values are known.
+        Standard error of the mean, in the same unit; NaN where fewer than two values, or two
+        periods, are known.
     correlation_time : float
         Integral of the autocorrelation over positive lags [s]; 0 of a constant.
     window : tuple of float
         First and last time of the values [s].
     samples : float
-        Number of independent samples that would have the same error [-].
+        Number of independent samples that would have the same error [-]; at most the periods.
     long_enough : bool
         Whether the error can be trusted: eight blocks of the series that no longer know of each
-        other fit into the window, it holds 20 independent samples, and its halves differ by less
-        than 4 errors of their difference. A series that stays within 0.1 % of its mean is long
+        other fit into the window, as if it held 20 independent samples, and its halves differ by
+        less than 4 errors of their difference. A series that stays within 0.1 % of its mean is long
         enough as it is. Where it is not, the error is the largest of all blocks': too small.
     """
 
@@ -132,7 +133,7 @@ def time_average(
     span = (float(time[0]), float(time[-1]))
     if single <= 1e-14 * abs(mean):
         return Average(
-            mean=mean, error=single, correlation_time=0.0, window=span, samples=float(n),
+            mean=mean, error=0.0, correlation_time=0.0, window=span, samples=float(n),
             long_enough=True,
         )  # fmt: skip
     error, settled = _block_error(values, single, whole)
@@ -146,7 +147,7 @@ def time_average(
         error=error,
         correlation_time=slack * interval / 2,
         window=span,
-        samples=min(float(n), n / slack) if slack > 0 else float(n),
+        samples=min(n / whole, n / slack) if slack > 0 else n / whole,
         long_enough=steady
         or (settled and n >= _FEWEST_SAMPLES * slack and drift <= max(_DRIFT * 2 * error, little)),
     )
@@ -155,9 +156,11 @@ def time_average(
 def _block_error(values: FloatArray, single: float, whole: int) -> tuple[float, bool]:
     """Error of the mean, and whether the blocks that it comes from are independent."""
     n = values.size
-    largest = 0.0
-    for size in _sizes(n // _FEWEST_BLOCKS, whole):
+    largest = math.nan
+    for size in _sizes(max(n // _FEWEST_BLOCKS, whole), whole):
         blocks = n // size
+        if blocks < 2:
+            break
         means = values[n - blocks * size :].reshape(blocks, size).mean(axis=1)
         error = float(means.std(ddof=1)) / math.sqrt(blocks)
         slack = (error / single) ** 2
@@ -165,8 +168,8 @@ def _block_error(values: FloatArray, single: float, whole: int) -> tuple[float, 
             # neighbours of blocks so short still know a little of each other
             missing = (slack - 1 / slack) / (2 * size) if slack > 1 else 0.0
             return error / math.sqrt(1 - missing), True
-        largest = max(largest, error)
-    return largest or single, False
+        largest = max(error, largest)  # in this order NaN gives way
+    return largest, False
 
 
 def _sizes(largest: int, whole: int) -> list[int]:

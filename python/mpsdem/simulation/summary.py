@@ -142,8 +142,7 @@ def _warnings(plan: Plan, values: dict[str, Any]) -> Iterator[str]:
     if short := [name for name in short if name in SUMMARY_KEYS]:
         yield (
             f"the run is too short for the mean of {', '.join(short)}: the second half drifts or "
-            "holds fewer than 20 independent samples, and the error bars are too small; a later "
-            "end_time"
+            "holds too few independent samples, and the error bars are too small; a later end_time"
         )
     if (overlap := values.get("largest_overlap", 0.0)) > SOFT:
         yield f"solids overlapped by up to {overlap:.0%} of their radius: contacts are too soft"
