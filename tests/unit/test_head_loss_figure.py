@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from synthetic_results import CASE, TIMES, frame, open_writer
 
+from mpsdem.analysis import survey
 from mpsdem.analysis.head_loss import DHLLDV, MODELS, comparable, measured
 from mpsdem.plot import draw_head_loss, figures
 from mpsdem.results import Results, ResultsError, write_summary
@@ -101,4 +102,5 @@ def test_what_does_not_settle_has_no_figure_of_head_loss(tmp_path, change):
 
 
 def test_the_figure_is_among_those_of_a_run(tmp_path):
-    assert "head_loss" in dict(figures._drawings(write(tmp_path), None))
+    results = write(tmp_path)
+    assert "head_loss" in dict(figures._drawings(results, None, survey(results)))
