@@ -119,7 +119,8 @@ class MovingAxis:
         along = np.concatenate([[0.0], np.cumsum(known[1:] + known[:-1]) / 2]) * stations[1]
         of_section = self._acceleration(position[:, 0], time, speed)
         on_axis: FloatArray = np.interp(position[:, 0], stations, along)
-        return -(of_section * position).sum(axis=1) - on_axis
+        pressure: FloatArray = -(of_section * position).sum(axis=1) - on_axis
+        return pressure
 
     def _acceleration(self, x: FloatArray, time: float, speed: float) -> FloatArray:
         pipe = self.motion.at(time, along=x / self.length).acceleration

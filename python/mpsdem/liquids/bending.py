@@ -13,9 +13,7 @@ from mpsdem.case import MovingAxis
 def bending(axis: MovingAxis, start: float, end: float) -> geometry.Bending:
     """The pipe's modes from `start` to `end` [s]."""
     modes = axis.motion.modes
-    before, after = (
-        [axis.motion.of_mode(mode, time) for mode in modes] for time in (start, end)
-    )
+    before, after = ([axis.motion.of_mode(mode, time) for mode in modes] for time in (start, end))
     return geometry.Bending(
         duration=end - start,
         wave_number=np.array(modes) * (math.pi / axis.length),

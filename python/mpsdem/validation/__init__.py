@@ -15,6 +15,7 @@ from mpsdem.validation import (
     drag,
     eulerian,
     impacts,
+    motion,
     particle_liquid,
     pipe,
     push_plate,
@@ -34,6 +35,7 @@ CHECKS = collect(
     particle_liquid.checks(),
     eulerian.checks(),
     push_plate.checks(),
+    motion.checks(),
     two_way.checks(),
 )
 """All checks by their ids."""
