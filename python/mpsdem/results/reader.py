@@ -367,8 +367,8 @@ class LiquidResults:
         (m,) float64 ndarray
             p' + rho (g - a).x - G x [Pa], G the mean loss since the frame before, a the
             acceleration of the pipe; where it flexes, that of a plug that follows it. Zero is the
-            mean of p' on the axis at the inlet. It is not periodic: from the outlet to the inlet it jumps by
-            what a pump gives.
+            mean of p' on the axis at the inlet. It is not periodic: from the outlet to the inlet
+            it jumps by what a pump gives.
         """
         pressure: FloatArray = self.pressure[frame]
         return pressure + self._split_off(frame, self.position[frame])
