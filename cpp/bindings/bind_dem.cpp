@@ -31,7 +31,7 @@ std::span<const Real> one_or_many(const std::variant<Real, Array<Real>>& a, cons
 
 using LawArgument =
     std::variant<const dem::LinearSpring*, const dem::HertzMindlin*, const dem::HertzViscoelastic*>;
-using WallArgument = std::variant<const geometry::Plane*, const geometry::Cylinder*>;
+using WallArgument = std::variant<const geometry::Plane*, const geometry::Cylinder*, const geometry::BentCylinder*>;
 
 /// The value behind a variant of pointers: pybind11 fills those, never a value without a default.
 template <class Value, class Argument>
@@ -191,7 +191,7 @@ pair_law, wall_law : LinearSpring, HertzMindlin or HertzViscoelastic
     Contact law between solids and at walls.
 pair_rolling_friction, wall_rolling_friction : float
     [-].
-walls : list of Plane or Cylinder
+walls : list of Plane, Cylinder or BentCylinder
 period : float
     Length of the periodic x axis [m]; 0 for none.
 threads : int
@@ -271,6 +271,8 @@ Raises
 ValueError
     A shape, a negative number, or one of those that come together is missing.
 )")
+        .def("bend", &dem::Solids::bend, "bending"_a,
+             "Bent walls move so in the next `advance`, and stay as at its end.")
         .def("advance", &dem::Solids::advance, "dt"_a, "steps"_a,
              py::call_guard<py::gil_scoped_release>(),
              "Take `steps` steps of velocity Verlet of `dt` [s]. ValueError: dt is not > 0, or too "

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <tuple>
+
 namespace mpsdem::bindings {
 
 using namespace pybind11::literals;
@@ -16,6 +18,36 @@ auto distance(const S& surface, const Array<Real>& points) {
     out.reserve(x.size());
     for (const Vec3 p : x) out.push_back(surface.at(p).distance);
     return array(out);
+}
+
+geometry::Bending bending(Real duration, const Array<Real>& wave_number, const Array<Real>& from,
+                          const Array<Real>& velocity_before, const Array<Real>& to,
+                          const Array<Real>& velocity_after) {
+    const auto k = values(wave_number, "wave_number");
+    const auto rows = [&](const Array<Real>& a, const char* name) {
+        const auto v = vectors(a, name);
+        require(v.size() == k.size(), std::string(name) + " must have one row per wave_number");
+        return v;
+    };
+    const auto start = rows(from, "displacement_before"), end = rows(to, "displacement_after");
+    const auto before = rows(velocity_before, "velocity_before");
+    const auto after = rows(velocity_after, "velocity_after");
+    std::vector<geometry::Bending::Mode> modes;
+    for (std::size_t n = 0; n < k.size(); ++n)
+        modes.push_back({k[n], start[n], before[n], end[n], after[n]});
+    return {std::move(modes), duration};
+}
+
+auto axis(const geometry::Bending& bending, Real elapsed, const Array<Real>& x) {
+    const geometry::Bend now = bending.at(elapsed);
+    std::vector<Vec3> displacement, slope, velocity;
+    for (const Real along : values(x, "x")) {
+        const auto point = now.at(along);
+        displacement.push_back(point.displacement);
+        slope.push_back(point.slope);
+        velocity.push_back(point.velocity);
+    }
+    return std::tuple(array(displacement), array(slope), array(velocity));
 }
 
 constexpr const char* distance_doc =
@@ -56,6 +88,56 @@ void bind_geometry(py::module_ m) {
              }),
              py::kw_only(), "radius"_a, "velocity"_a)
         .def("distance", &distance<geometry::Cylinder>, "points"_a, distance_doc);
+
+    py::class_<geometry::Bending>(
+        m, "Bending",
+        R"(How a pipe along x bends over a step: w(x, t) = sum_n a_n(t) cos(k_n x), across itself.
+
+The amplitudes are cubics in time through their ends, displacement and velocity, so that the
+velocity is the derivative of the displacement throughout.
+
+Parameters
+----------
+duration : float
+    Of the step [s].
+wave_number : (m,) float64 ndarray
+    k_n [1/m]; 0 moves the pipe as one body.
+displacement_before, displacement_after : (m, 3) float64 ndarray
+    a_n at the ends of the step [m]; x is 0.
+velocity_before, velocity_after : (m, 3) float64 ndarray
+    Their derivatives in time [m/s].
+)")
+        .def(py::init(&bending), py::kw_only(), "duration"_a, "wave_number"_a,
+             "displacement_before"_a, "velocity_before"_a, "displacement_after"_a,
+             "velocity_after"_a)
+        .def("axis", &axis, "elapsed"_a, "x"_a,
+             R"(Displacement, slope and velocity of the axis.
+
+Parameters
+----------
+elapsed : float
+    Time since the start of the step [s]; as at its ends before and after it.
+x : (n,) float64 ndarray
+    Places along the pipe [m].
+
+Returns
+-------
+displacement, slope, velocity : (n, 3) float64 ndarray
+    [m], [-], [m/s].
+)");
+
+    py::class_<geometry::BentCylinder>(
+        m, "BentCylinder",
+        "The bore of a pipe along x, of `radius` [m], wetted inside, whose axis is bent and moves: "
+        "straight until a `Bending` tells.")
+        .def(py::init<Real>(), py::kw_only(), "radius"_a)
+        .def(
+            "bend",
+            [](geometry::BentCylinder& wall, const geometry::Bending& bending, Real elapsed) {
+                wall.bend(bending.at(elapsed));
+            },
+            "bending"_a, "elapsed"_a, "Let it be as so long after the start of a step [s].")
+        .def("distance", &distance<geometry::BentCylinder>, "points"_a, distance_doc);
 }
 
 } // namespace mpsdem::bindings

@@ -106,6 +106,8 @@ draws : (n, 2) float64 ndarray
                       "What walls and viscosity take up, mean over the call [Pa/m].")
         .def_readonly("unexplained", &AdvanceReport::unexplained,
                       "What p' does to the axial momentum, and must not, mean [Pa/m].")
+        .def_readonly("bending", &AdvanceReport::bending,
+                      "Part of mean_gradient: the loss along an axis that slopes and moves [Pa/m].")
         .def_readonly("convection_error", &AdvanceReport::convection_error,
                       "Axial momentum that particles failed to carry along between solids, and "
                       "were given back, mean over the call [Pa/m].")
@@ -208,6 +210,9 @@ Koshizuka & Oka (1996) doi:10.13182/NSE96-A24205.
             "advance", [](Liquid& liquid, Real dt) { return liquid.advance(dt); }, "dt"_a,
             py::call_guard<py::gil_scoped_release>(),
             "Advance by dt [s], in as many substeps as Courant number and viscosity ask for.")
+        .def("bend", &Liquid::bend, "bending"_a,
+             "The pipe moves so in the next `advance`, of the same duration; from now on it is as "
+             "at the start of it.")
         .def(
             "drive",
             [](Liquid& liquid, Real bulk_velocity, std::optional<Real> pressure_gradient) {

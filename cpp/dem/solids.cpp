@@ -174,6 +174,20 @@ Real Solids::longest_step() const noexcept {
     return most_lubrication / lubrication_rate_;
 }
 
+void Solids::bend(const geometry::Bending& bending) {
+    bending_ = bending;
+    bend_walls(0);
+}
+
+void Solids::bend_walls(Real elapsed) {
+    if (bending_.straight()) return;
+    const geometry::Bend now = bending_.at(elapsed);
+    wall_speed_ = now.most_speed();
+    wall_slope_ = now.most_slope();
+    for (geometry::Wall& wall : walls_)
+        if (auto* bent = std::get_if<geometry::BentCylinder>(&wall)) bent->bend(now);
+}
+
 AdvanceReport Solids::advance(Real dt, std::size_t steps) {
     require(dt > 0, "advance: dt must be > 0 s");
     require(
@@ -185,6 +199,7 @@ AdvanceReport Solids::advance(Real dt, std::size_t steps) {
     for (Block& block : blocks_) block.largest_overlap = 0;
     for (std::size_t step = 0; step < steps; ++step) {
         move(step == 0 ? dt / 2 : dt, dt); // the kick closes the step before, too
+        bend_walls(static_cast<Real>(step + 1) * dt);
         update_lists(dt, report);
         if (!report.finite) return report;
         contact_forces(dt);
@@ -286,7 +301,8 @@ void Solids::update_lists(Real dt, AdvanceReport& report) {
     fastest_ = std::sqrt(fastest2);
     frame_time_ += dt;
     approach_ += 2 * fastest_ * dt;
-    wall_approach_ += (fastest_ + wall_drift_) * dt;
+    // a sloping wall nears by what goes along the pipe, too
+    wall_approach_ += (fastest_ + wall_drift_ + wall_speed_) * (1 + wall_slope_) * dt;
     if (approach_ <= inner_skin_ && wall_approach_ <= wall_skin_) return;
 
     ++report.prunes;
@@ -322,7 +338,8 @@ void Solids::update_lists(Real dt, AdvanceReport& report) {
 /// wall needs a wider skin there.
 void Solids::set_inner_skin(Real skin) {
     inner_skin_ = skin;
-    const Real drift = wall_drift_ * skin / (2 * std::max(fastest_, 1e-3 * wall_drift_ + 1e-300));
+    const Real towards = (wall_drift_ + wall_speed_) * (1 + wall_slope_);
+    const Real drift = towards * skin / (2 * std::max(fastest_, 1e-3 * towards + 1e-300));
     wall_skin_ = skin / 2 + std::min(drift, mean_radius_);
     approach_ = wall_approach_ = 0;
 }

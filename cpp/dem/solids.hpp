@@ -66,6 +66,9 @@ public:
                      std::span<const Real> drag_rate, std::span<const Vec3> liquid_acceleration,
                      std::span<const Real> relaxation, std::span<const Real> added_mass);
 
+    /// Bent walls move so in the next advance; as at its end afterwards.
+    void bend(const geometry::Bending& bending);
+
     /// `steps` steps of velocity Verlet of `dt` [s].
     AdvanceReport advance(Real dt, std::size_t steps);
 
@@ -101,6 +104,7 @@ private:
     template <class Choose>
     [[nodiscard]] auto in_medium(const Choose& choose) const;
     void measure(const Lubrication& lubrication);
+    void bend_walls(Real elapsed);
     void kick_all(Real dt);
     void move(Real kick_time, Real dt);
     void wall_forces(Block& block, Real dt);
@@ -125,6 +129,9 @@ private:
     Population solids_;
     std::vector<Block> blocks_;
     std::vector<geometry::Wall> walls_;
+    geometry::Bending bending_;
+    Real wall_speed_ = 0; // [m/s] of bent walls, at most
+    Real wall_slope_ = 0; // [-] of their axis, at most
     std::vector<WallHistory> at_wall_;
     ContactModel pair_model_, wall_model_;
     std::optional<Lubrication> lubrication_;

@@ -29,6 +29,7 @@ struct WallHistory {
 [[nodiscard]] inline Real closing_speed(const geometry::Wall& wall, Vec3 velocity) noexcept {
     if (const auto* plane = std::get_if<geometry::Plane>(&wall))
         return std::abs(dot(velocity, plane->at(Vec3{}).normal));
+    if (std::holds_alternative<geometry::BentCylinder>(wall)) return norm(velocity);
     return norm(Vec3{0, velocity.y, velocity.z}); // along the pipe its wall stays as far
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/bent_cylinder.hpp"
 #include "geometry/cylinder.hpp"
 #include "geometry/plane.hpp"
 
@@ -8,6 +9,6 @@
 namespace mpsdem::geometry {
 
 /// Any wall of a scene; visited once per stage, never inside a loop over particles.
-using Wall = std::variant<Plane, Cylinder>;
+using Wall = std::variant<Plane, Cylinder, BentCylinder>;
 
 } // namespace mpsdem::geometry

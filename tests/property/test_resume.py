@@ -59,6 +59,16 @@ CASES = {
     "lagrangian, two-way, shaken": case(
         liquid=WATER | {"model": "lagrangian"}, coupling="two-way", motion=SHAKE
     ),
+    "lagrangian, two-way, flexing": case(
+        liquid=WATER | {"model": "lagrangian"},
+        coupling="two-way",
+        motion={"vibration": SHAKE["vibration"] | {"direction": "z", "mode": 2, "phase": 1.0}},
+    ),
+    "dry, flexing without a ramp": case(
+        motion={
+            "vibration": SHAKE["vibration"] | {"direction": "z", "mode": 2, "phase": 1.0, "ramp": 0}
+        }
+    ),
     "profile, Schiller-Naumann": case(liquid=WATER, solids={"drag": "schiller_naumann"}),
     "clear liquid": case(liquid=WATER).with_(solids=None),
     "lagrangian": case(liquid=WATER | {"model": "lagrangian"}),

@@ -155,7 +155,7 @@ Liquid::Liquid(std::span<const Vec3> position, std::span<const Vec3> velocity,
     pressure_.assign(size(), 0);
     find_pairs();
     find_known();
-    pressure_equation_.assemble(pairs_, known_);
+    pressure_equation_.assemble(pairs_, pairs_.neighbors().position(), known_);
     pressure_equation_.prepare();
 
     // Ghosts keep their places behind the wall, and so do their shares.
@@ -181,9 +181,52 @@ void Liquid::drive(const Drive& drive) {
     drive_ = drive;
 }
 
+void Liquid::bend(const geometry::Bending& bending) {
+    require(ends_.periodic() || bending.straight(), "bend: no plate in a pipe that moves");
+    bending_ = bending;
+    bend_to(0);
+}
+
+/// Walls, and all particles with them, where they are so long after the start of the advance.
+void Liquid::bend_to(Real elapsed) {
+    wall_.bend(bending_.at(elapsed));
+    if (wall_.straight()) return;
+    place_.resize(size());
+    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
+        const auto axis = wall_.axis(position_[i].x);
+        place_[i] = position_[i] + axis.displacement;
+        if (i >= liquid_count_) velocity_[i] = axis.velocity;
+    });
+}
+
+/// What is known of the liquid's motion beforehand: that of a plug which follows the axis. Walls
+/// take the velocity of the end of the substep.
+void Liquid::follow_axis(Real dt, Real elapsed) {
+    const geometry::Bend later = bending_.at(elapsed + dt);
+    const Real speed = drive_.bulk_velocity;
+    shift_.resize(liquid_count_);
+    plug_.resize(liquid_count_);
+    parallel_for(size(), numerics_.threads, [&](std::size_t i) {
+        const Real x = position_[i].x;
+        if (i >= liquid_count_) {
+            velocity_[i] = later.at(x).velocity;
+            return;
+        }
+        const auto from = wall_.axis(x), to = later.at(x + speed * dt);
+        plug_[i] = to.velocity + speed * to.slope;
+        const Vec3 gain = plug_[i] - from.velocity - speed * from.slope;
+        const Vec3 turn = to.turning + speed * to.curvature - from.turning - speed * from.curvature;
+        velocity_[i] += Vec3{turn.y * position_[i].y + turn.z * position_[i].z, gain.y, gain.z};
+        shift_[i] = {dot(gain, from.slope), 0, 0};
+    });
+    bending_loss_ = density_ / dt * mean_in_bore([&](std::size_t i) { return shift_[i].x; });
+}
+
 AdvanceReport Liquid::advance(Real dt, Loading* loading) {
     require(dt > 0, "advance: dt must be > 0 s");
     require(loading == nullptr || ends_.periodic(), "advance: no solids in a liquid with a plate");
+    require(bending_.straight() || std::abs(bending_.duration() - dt) < 1e-6 * dt,
+            "advance: dt must be the duration of the bending");
     AdvanceReport report;
     if (loading == nullptr) {
         eps_.clear();
@@ -205,12 +248,14 @@ AdvanceReport Liquid::advance(Real dt, Loading* loading) {
         }
         left -= length;
         ++report.substeps;
-        report.mean_gradient += gradient_ * length / dt;
+        report.mean_gradient += (gradient_ + bending_loss_) * length / dt;
+        report.bending += bending_loss_ * length / dt;
         report.friction += friction_ * length / dt;
         report.unexplained += unexplained_ * length / dt;
         report.convection_error += convection_error_ * length / dt;
     }
     load_ = {}; // its spans are the solids'
+    bend_to(dt); // to the last bit, where the next advance begins
     return report;
 }
 
@@ -222,7 +267,10 @@ Real Liquid::dynamic_pressure() const noexcept {
 
 Real Liquid::fastest() const {
     Real square = 0;
-    for (const Vec3& u : liquid_velocity()) square = std::max(square, dot(u, u));
+    for (std::size_t i = 0; i < liquid_count_; ++i) {
+        const Vec3 u = from_wall(i, velocity_[i]);
+        square = std::max(square, dot(u, u));
+    }
     return std::sqrt(square);
 }
 
@@ -237,6 +285,7 @@ Real Liquid::stable_step() const {
 /// One substep; `false` and the state as before where the pressure could not be solved.
 bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed) {
     sort();
+    bend_to(elapsed);
     find_pairs();
     const Real carried_to = mean_momentum();
     load_ = loading == nullptr ? Load{} : loading->before(points(), elapsed, dt);
@@ -246,6 +295,7 @@ bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed
     const AxialBins bins_before = flux_of_sections([&](std::size_t i) { return flux_before(i); });
     predict(dt, report);
     friction_ = density_ * (before - mean_momentum()) / dt;
+    if (!wall_.straight()) follow_axis(dt, elapsed);
     if (loaded()) {
         fastest_ = fastest();
         // What the particles bring along by their motion, and the liquid that passes them, only
@@ -260,7 +310,8 @@ bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed
         return false;
     }
     correct(dt, bins_before);
-    move(dt, report);
+    move(dt, report, elapsed);
+    bend_to(elapsed + dt);
     if (!ends_.periodic()) move_plate(dt, report);
     if (loaded()) leave_load(dt, *loading);
     return true;
@@ -271,8 +322,8 @@ bool Liquid::outruns(Real dt) const {
     Real square = 0;
     for (std::size_t i = 0; i < liquid_count_; ++i) {
         const Vec3 flux = load_.void_fraction[i] * velocity_[i] + load_.solids_flux[i];
-        const Vec3 past = velocity_[i] - flux;
-        square = std::max({square, dot(flux, flux), 4 * dot(past, past)});
+        const Vec3 past = velocity_[i] - flux, gone = from_wall(i, flux);
+        square = std::max({square, dot(gone, gone), 4 * dot(past, past)});
     }
     const Real farthest = std::max(numerics_.courant, farthest_with_solids);
     return std::sqrt(square) * dt > farthest * (1 + 1e-9) * numerics_.particle_spacing;
@@ -298,7 +349,7 @@ Real Liquid::mean_momentum() const {
 /// Put neighbors in space near in memory.
 void Liquid::sort() {
     const int threads = numerics_.threads;
-    grid_.sort(liquid_position(), cells_, order_, threads);
+    grid_.sort(std::span<const Vec3>(position_).first(liquid_count_), cells_, order_, threads);
     reorder(position_, order_, threads, shift_);
     reorder(velocity_, order_, threads, shift_);
     reorder(pressure_, order_, threads, scalar_);
@@ -315,7 +366,7 @@ neighbors::Groups Liquid::groups() const {
 }
 
 void Liquid::find_pairs() {
-    pairs_.find(position_, groups(), numerics_.threads);
+    pairs_.find(places_now(), groups(), numerics_.threads);
 }
 
 /// Viscosity and wall shear, on the liquid.
@@ -334,8 +385,13 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
         add_wall_shear();
     } else {
         deficient_.resize(liquid_count_);
-        least_squares_laplacian<geometry::Cylinder, Vec3>(
-            wall_, pairs_.neighbors(), kind_, velocity_, threads, acceleration_, deficient_);
+        if (wall_.straight())
+            least_squares_laplacian<geometry::Cylinder, Vec3>(
+                wall_, pairs_.neighbors(), kind_, velocity_, threads, acceleration_, deficient_);
+        else
+            least_squares_laplacian<geometry::BentCylinder, Vec3>(wall_.bent(), pairs_.neighbors(),
+                                                                  kind_, velocity_, threads,
+                                                                  acceleration_, deficient_);
         report.deficient += static_cast<std::size_t>(std::ranges::count(deficient_, 1));
         for (Vec3& a : acceleration_) a = viscosity_ * a;
         if (!ends_.periodic()) smooth_beside_plate();
@@ -411,8 +467,11 @@ void Liquid::hold_sections(Real dt, const AxialBins& before) {
     // Across the pipe the mean flux is nil: a uniform gradient undoes what drag does to it, as one
     // undoes gravity, and the solver need not.
     const Real open = mean_in_bore([&](std::size_t i) { return damping_[i]; });
-    const Vec3 across{0, mean_in_bore([&](std::size_t i) { return velocity_[i].y; }) / open,
-                      mean_in_bore([&](std::size_t i) { return velocity_[i].z; }) / open};
+    const auto from_axis = [&](std::size_t i) {
+        return wall_.straight() ? velocity_[i] : velocity_[i] - plug_[i];
+    };
+    const Vec3 across{0, mean_in_bore([&](std::size_t i) { return from_axis(i).y; }) / open,
+                      mean_in_bore([&](std::size_t i) { return from_axis(i).z; }) / open};
     parallel_for(liquid_count_, numerics_.threads,
                  [&](std::size_t i) { velocity_[i] -= damping_[i] * across; });
 }
@@ -457,8 +516,8 @@ void Liquid::find_eddy_viscosity(Real dt, AdvanceReport& report) {
     std::visit(
         [&]<class Model>(const Model& model) {
             if constexpr (LengthModel<Model>)
-                eddy_viscosity(model, liquid_position(), scalar_, largest, threads,
-                               eddy_viscosity_);
+                eddy_viscosity(model, std::span<const Vec3>(position_).first(liquid_count_),
+                               scalar_, largest, threads, eddy_viscosity_);
         },
         flow_);
     report.viscosity_capped +=
@@ -473,10 +532,10 @@ void Liquid::add_wall_shear() {
     const int threads = numerics_.threads;
     constexpr Real outside_the_layer = -1;
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
-        const Real distance = wall_.at(position_[i]).distance;
+        const Real distance = wall_.at(places_now()[i]).distance;
         scalar_[i] = outside_the_layer;
         if (distance >= dx || !moves(i)) return;
-        const Real speed = norm(velocity_[i]);
+        const Real speed = norm(from_wall(i, velocity_[i]));
         const Real y = std::max(distance, nearest_liquid * dx);
         scalar_[i] = speed == 0 ? 0 : wall_function_.shear(speed, y) / speed; // [1/s m]
     });
@@ -494,7 +553,7 @@ void Liquid::add_wall_shear() {
     const Real per_volume = 2 * static_cast<Real>(liquid) / (pipe_radius_ * count);
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
         if (scalar_[i] != outside_the_layer)
-            acceleration_[i] -= (per_volume * scalar_[i]) * velocity_[i];
+            acceleration_[i] -= (per_volume * scalar_[i]) * from_wall(i, velocity_[i]);
     });
     wall_shear_ = density_ * sum / count;
 }
@@ -518,7 +577,10 @@ bool Liquid::solve_pressure(Real dt, AdvanceReport& report) {
     pressure_before_.assign(pressure_.begin(),
                             pressure_.begin() + static_cast<std::ptrdiff_t>(unknowns));
     find_known();
-    pressure_equation_.assemble(pairs_, known_);
+    const bool straight = wall_.straight();
+    pressure_equation_.assemble(
+        pairs_, straight ? pairs_.neighbors().position() : std::span<const Vec3>(position_),
+        known_);
     if (!pressure_equation_.solve(right_hand_side_, std::span(pressure_).first(unknowns),
                                   report.solve)) {
         std::ranges::copy(pressure_before_, pressure_.begin());
@@ -649,7 +711,9 @@ void Liquid::hold_flux_of_plate(Real dt, const AxialBins& before) {
 /// Move with the velocity, and shift towards where particles are few. The shift goes with the way
 /// that the liquid makes: disorder comes from it, and a shift of every step, however short, would
 /// mix the momentum of a flow whose steps viscosity limits.
-void Liquid::move(Real dt, AdvanceReport& report) {
+void Liquid::move(Real dt, AdvanceReport& report, Real elapsed) {
+    const geometry::Bend later = bending_.at(elapsed + dt);
+    const Real speed = drive_.bulk_velocity;
     const Real dx = numerics_.particle_spacing;
     const Real longest = longest_shift * dx;
     const Real way = fastest() * dt / dx;
@@ -667,6 +731,13 @@ void Liquid::move(Real dt, AdvanceReport& report) {
     const Real farthest = pipe_radius_ - nearest_liquid * dx;
     report.held_back += count_liquid([&](std::size_t i) {
         Vec3 x = pairs_.position(i) + dt * velocity_[i] + shift_[i];
+        if (!later.straight()) {
+            // as far as the axis goes, and not as its last velocity would carry it
+            const Real along = position_[i].x;
+            x += later.at(along + speed * dt).displacement - wall_.axis(along).displacement -
+                 dt * plug_[i];
+            x -= later.at(x.x).displacement;
+        }
         const Real r2 = x.y * x.y + x.z * x.z;
         const bool beyond = r2 > farthest * farthest;
         if (beyond) {
@@ -779,7 +850,7 @@ void Liquid::resize_liquid(std::size_t count) {
 }
 
 std::vector<Vec3> Liquid::position() const {
-    return in_given_order<Vec3>(position_, id_, places_, {nan, nan, nan});
+    return in_given_order<Vec3>(places_now(), id_, places_, {nan, nan, nan});
 }
 std::vector<Vec3> Liquid::velocity() const {
     return in_given_order<Vec3>(velocity_, id_, places_, {nan, nan, nan});
@@ -808,15 +879,18 @@ Real Liquid::bulk_velocity() const {
 
 Real Liquid::kinetic_energy() const {
     const auto share = [&](std::size_t i) { return eps_.empty() ? 1 : eps_[i]; };
-    return mean_in_bore(
-               [&](std::size_t i) { return share(i) * dot(velocity_[i], velocity_[i]) / 2; }) /
+    const auto square = [&](std::size_t i) {
+        const Vec3 u = from_wall(i, velocity_[i]);
+        return dot(u, u);
+    };
+    return mean_in_bore([&](std::size_t i) { return share(i) * square(i) / 2; }) /
            mean_in_bore(share);
 }
 
 /// Number density over its mean in the liquid, of liquid and wall as they are now.
 std::vector<Real> Liquid::number_ratio() const {
     StoredPairs now(reference_.weight, ends_.period());
-    now.find(position_, groups(), numerics_.threads);
+    now.find(places_now(), groups(), numerics_.threads);
     std::vector<Real> ratio(now.rows());
     number_density(now, numerics_.threads, ratio);
     const Real mean = mean_in_bore([&](std::size_t i) { return ratio[i]; });

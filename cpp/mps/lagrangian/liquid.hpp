@@ -54,6 +54,7 @@ struct AdvanceReport {
     Real mean_gradient = 0;    // [Pa/m] loss of pressure along the pipe, mean over the call
     Real friction = 0;         // [Pa/m] that walls and viscosity take up, mean over the call
     Real unexplained = 0;      // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
+    Real bending = 0; // [Pa/m] part of mean_gradient: the loss along a moving axis that slopes
     Real convection_error = 0; // [Pa/m] that particles failed to carry along, and were given back
     std::size_t clamped = 0;   // pressures cut to the limit
     std::size_t viscosity_capped = 0; // eddy viscosities cut to what the step can bear
@@ -69,7 +70,7 @@ struct AdvanceReport {
     bool sound = true;        // false: the pressure could not be solved, or speeds overflowed
 };
 
-/// The particle liquid of a full, straight, rigid pipe: MPS proper. The pipe is periodic, or a
+/// The particle liquid of a full, straight pipe, rigid or bending: MPS proper. The pipe is periodic, or a
 /// plate pushes the liquid through it.
 ///
 /// A step finds the neighbors once and takes every operator there:
@@ -101,6 +102,17 @@ struct AdvanceReport {
 /// and d(eps)/dt need not be found. G is then a function of x that gives each section back what
 /// drag and walls took from its flux.
 ///
+/// Walls that move (`bend`) carry their particles along, each cross-section as one body. All
+/// operators see where particles are; what counts from the axis (mixing length, the order in memory,
+/// the coarse space of the solver) sees them in the section, as in a straight pipe. The wall's
+/// velocity enters the divergence, its shear and the laminar Laplacian. As of every acceleration
+/// that is known, that of a plug which follows the axis w(x, t) is split off,
+///
+///   A = w_tt + 2 U w_xt + U^2 w_xx,   p = p' - rho (A.r + h(x)),  dh/dx = -A.w_x
+///
+/// r from the axis in the section: u gains (A_x.r, A) dt, whose mean along the pipe is nil, and h
+/// counts in the loss of pressure along the axis.
+///
 /// Sources: Koshizuka & Oka (1996), doi:10.13182/NSE96-A24205; shifting after Xu, Stansby &
 /// Laurence (2009), doi:10.1016/j.jcp.2009.05.032.
 class Liquid {
@@ -116,12 +128,16 @@ public:
     /// tells of the solids in the liquid, if there are any. Not with a plate.
     AdvanceReport advance(Real dt, Loading* loading = nullptr);
 
+    /// The pipe moves so in the next advance, which lasts as long; from now on it is where that
+    /// begins. Not with a plate.
+    void bend(const geometry::Bending& bending);
+
     /// Drive the liquid otherwise from now on. A plate drives it alone.
     void drive(const Drive& drive);
 
     /// The liquid's own particles, without wall and ghosts, in one order.
     [[nodiscard]] std::span<const Vec3> liquid_position() const noexcept { // [m]
-        return std::span(position_).first(liquid_count_);
+        return std::span(wall_.straight() ? position_ : place_).first(liquid_count_);
     }
     [[nodiscard]] std::span<const Vec3> liquid_velocity() const noexcept { // [m/s]
         return std::span(velocity_).first(liquid_count_);
@@ -176,6 +192,14 @@ private:
     }
     [[nodiscard]] Real dynamic_pressure() const noexcept; // [Pa] rho U^2
     [[nodiscard]] std::size_t size() const noexcept { return position_.size(); }
+    /// Where particles are; `position_` in their section, if the pipe is bent.
+    [[nodiscard]] const std::vector<Vec3>& places_now() const noexcept {
+        return wall_.straight() ? position_ : place_;
+    }
+    /// Velocity from that of the wall in the same section [m/s].
+    [[nodiscard]] Vec3 from_wall(std::size_t i, const Vec3& velocity) const noexcept {
+        return wall_.straight() ? velocity : velocity - wall_.axis(position_[i].x).velocity;
+    }
     [[nodiscard]] std::size_t solids() const noexcept { return size() - liquid_count_; }
     /// Whether a particle is liquid that its forces move.
     [[nodiscard]] bool moves(std::size_t i) const noexcept {
@@ -195,6 +219,8 @@ private:
     [[nodiscard]] Real fastest() const; // [m/s]
     [[nodiscard]] Real stable_step() const;
     [[nodiscard]] bool step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed);
+    void bend_to(Real elapsed);
+    void follow_axis(Real dt, Real elapsed);
     void sort();
     [[nodiscard]] neighbors::Groups groups() const;
     void find_pairs();
@@ -211,7 +237,7 @@ private:
     void correct(Real dt, const AxialBins& before);
     void hold_bulk_velocity(Real dt);
     void hold_flux_of_plate(Real dt, const AxialBins& before);
-    void move(Real dt, AdvanceReport& report);
+    void move(Real dt, AdvanceReport& report, Real elapsed);
     [[nodiscard]] bool loaded() const noexcept { return !load_.void_fraction.empty(); }
     [[nodiscard]] Real liquid_share(std::size_t i) const noexcept;
     [[nodiscard]] bool outruns(Real dt) const;
@@ -227,6 +253,7 @@ private:
 
     Ends ends_;
     Bore wall_;
+    geometry::Bending bending_;
     Real pipe_radius_, pipe_length_; // [m]
     Real density_;                   // [kg/m3]
     Real viscosity_;                 // [m2/s] kinematic
@@ -243,6 +270,7 @@ private:
     // Particles in the order liquid, wall, ghosts, each sorted by cells; walls and ghosts for good.
     std::size_t liquid_count_ = 0, wall_count_ = 0, places_ = 0;
     std::vector<Vec3> position_, velocity_;
+    std::vector<Vec3> place_; // [m] where they are if the pipe is bent; else not used
     std::vector<Kind> kind_;
     std::vector<Real> pressure_; // [Pa] p'
     std::vector<Index> id_;      // place in the order they were given
@@ -253,6 +281,7 @@ private:
 
     // Memory of a step.
     std::vector<Vec3> acceleration_, shift_, velocity_before_;
+    std::vector<Vec3> plug_; // [m/s] of one that follows a moving axis, at the end of the substep
     std::vector<Real> scalar_, eddy_viscosity_, right_hand_side_, pressure_before_, known_;
     std::vector<std::uint8_t> deficient_;
     std::vector<Index> order_, id_memory_;
@@ -267,6 +296,7 @@ private:
     Real fastest_ = 0;                       // [m/s] of the liquid, at the substep's start
     Real convection_error_ = 0;              // [Pa/m]
 
+    Real bending_loss_ = 0; // [Pa/m] of the last substep, along the axis
     Real gradient_ = 0, friction_ = 0, unexplained_ = 0, wall_shear_ = 0, pressure_noise_ = 0;
 };
 

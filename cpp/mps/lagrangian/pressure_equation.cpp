@@ -15,10 +15,11 @@ Real seconds_since(std::chrono::steady_clock::time_point start) {
 
 } // namespace
 
-void PressureEquation::assemble(const StoredPairs& pairs, std::span<const Real> known) {
+void PressureEquation::assemble(const StoredPairs& pairs, std::span<const Vec3> position,
+                                std::span<const Real> known) {
     const neighbors::NeighborList& neighbors = pairs.neighbors();
     period_ = neighbors.period();
-    position_ = neighbors.position().first(neighbors.rows());
+    position_ = position.first(neighbors.rows());
     matrix_.view(neighbors.first(), neighbors.inner(), neighbors.column(), pairs.weight(), known,
                  threads_);
 }

@@ -35,8 +35,10 @@ public:
         : solver_(solver), tolerance_(tolerance), particle_spacing_(particle_spacing),
           threads_(threads) {}
 
-    /// Look at the matrix of these pairs; `known` (rows,) is d, or empty for none.
-    void assemble(const StoredPairs& pairs, std::span<const Real> known);
+    /// Look at the matrix of these pairs; `known` (rows,) is d, or empty for none. The coarse space
+    /// sorts particles by their `position` (rows,), in a bent pipe that in its sections.
+    void assemble(const StoredPairs& pairs, std::span<const Vec3> position,
+                  std::span<const Real> known);
 
     /// Make the coarse matrix from the matrix looked at.
     void prepare();

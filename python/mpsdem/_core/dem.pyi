@@ -183,7 +183,7 @@ class Solids:
         Contact law between solids and at walls.
     pair_rolling_friction, wall_rolling_friction : float
         [-].
-    walls : list of Plane or Cylinder
+    walls : list of Plane, Cylinder or BentCylinder
     period : float
         Length of the periodic x axis [m]; 0 for none.
     threads : int
@@ -191,13 +191,17 @@ class Solids:
     lubrication : Lubrication, optional
         None: gaps hold nothing. Its force bounds the step of `advance`.
     """
-    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pair_law: LinearSpring | HertzMindlin | HertzViscoelastic, wall_law: LinearSpring | HertzMindlin | HertzViscoelastic, pair_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, wall_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, walls: collections.abc.Sequence[mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder] = [], period: typing.SupportsFloat | typing.SupportsIndex = 0.0, threads: typing.SupportsInt | typing.SupportsIndex = 1, lubrication: Lubrication | None = None) -> None:
+    def __init__(self, *, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], spin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], density: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], pair_law: LinearSpring | HertzMindlin | HertzViscoelastic, wall_law: LinearSpring | HertzMindlin | HertzViscoelastic, pair_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, wall_rolling_friction: typing.SupportsFloat | typing.SupportsIndex = 0.0, walls: collections.abc.Sequence[mpsdem._core.geometry.Plane | mpsdem._core.geometry.Cylinder | mpsdem._core.geometry.BentCylinder] = [], period: typing.SupportsFloat | typing.SupportsIndex = 0.0, threads: typing.SupportsInt | typing.SupportsIndex = 1, lubrication: Lubrication | None = None) -> None:
         ...
     def __len__(self) -> int:
         ...
     def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex, steps: typing.SupportsInt | typing.SupportsIndex) -> AdvanceReport:
         """
         Take `steps` steps of velocity Verlet of `dt` [s]. ValueError: dt is not > 0, or too long for lubrication.
+        """
+    def bend(self, bending: mpsdem._core.geometry.Bending) -> None:
+        """
+        Bent walls move so in the next `advance`, and stay as at its end.
         """
     def contacts(self) -> dict[str, typing.Any]:
         """

@@ -233,6 +233,11 @@ class LiquidReport:
     What a call of LagrangianLiquid.advance met.
     """
     @property
+    def bending(self) -> float:
+        """
+        Part of mean_gradient: the loss along an axis that slopes and moves [Pa/m].
+        """
+    @property
     def clamped(self) -> int:
         """
         Pressures cut to the limit.
@@ -395,6 +400,10 @@ class LagrangianLiquid:
     def advance(self, dt: typing.SupportsFloat | typing.SupportsIndex) -> LiquidReport:
         """
         Advance by dt [s], in as many substeps as Courant number and viscosity ask for.
+        """
+    def bend(self, bending: mpsdem._core.geometry.Bending) -> None:
+        """
+        The pipe moves so in the next `advance`, of the same duration; from now on it is as at the start of it.
         """
     def drive(self, *, bulk_velocity: typing.SupportsFloat | typing.SupportsIndex, pressure_gradient: typing.SupportsFloat | typing.SupportsIndex | None = None) -> None:
         """

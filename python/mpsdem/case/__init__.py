@@ -1,5 +1,6 @@
 """The case file: frozen models, SI inside, units and every check at the border."""
 
+from mpsdem.case.axis import MovingAxis
 from mpsdem.case.case import Case, load_case
 from mpsdem.case.errors import CaseError, Problem
 from mpsdem.case.fidelity import Fidelity
@@ -32,6 +33,7 @@ __all__ = [
     "Material",
     "Motion",
     "Movement",
+    "MovingAxis",
     "Output",
     "Pipe",
     "Problem",

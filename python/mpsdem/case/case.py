@@ -9,6 +9,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Self
 
+import numpy as np
+
+from mpsdem.case.axis import MovingAxis
 from mpsdem.case.errors import CaseError, Problem
 from mpsdem.case.fidelity import Fidelity
 from mpsdem.case.liquid import Liquid
@@ -21,6 +24,7 @@ from mpsdem.case.units import Quantity
 
 # Densest random packing of equal spheres; Scott & Kilgour (1969), doi:10.1088/0022-3727/2/6/311.
 _DENSEST_PACKING = 0.64
+_SAMPLES = np.linspace(0.0, 1.0, 101)  # of the time, where a motion along the pipe shows
 
 
 class Case(Part):
@@ -205,7 +209,10 @@ class Case(Part):
             rule, remedy = "without a liquid nothing moves", "add [liquid], or leave it out"
             yield Problem(field="solids.held", value=True, rule=rule, remedy=remedy)
         if self.liquid is not None and (
-            self.liquid.computed or self.pipe.has_plate or self.fidelity.coupling == "two-way"
+            self.liquid.computed
+            or self.pipe.has_plate
+            or self.motion.moves_walls
+            or self.fidelity.coupling == "two-way"
         ):
             yield from self.spacing_problems()
         if self.output.every > self.end_time:
@@ -288,13 +295,36 @@ class Case(Part):
                 remedy="repeat the last place at a later time, if the pipe is to stay there",
             )
         if self.motion.moves_walls:
-            flexes = self.motion.flexes
+            yield from self._walls_that_cannot_move()
+
+    def _walls_that_cannot_move(self) -> Iterable[Problem]:
+        flexes, liquid = self.motion.flexes, self.liquid
+        still = "take mode = 0" if flexes else "leave motion.walls out"
+        why = "a pipe that flexes moves its walls" if flexes else "walls are to move"
+        if liquid is not None and liquid.model not in ("auto", "lagrangian"):
             yield Problem(
-                field="motion.vibration" if flexes else "motion.walls",
-                value=None if flexes else self.motion.walls,
-                rule="walls that move through the liquid are not computed yet",
-                remedy="take mode = 0" if flexes else "leave it out",
+                field="liquid.model",
+                value=liquid.model,
+                rule=f"{why} through the liquid, and this one has no particles that give way",
+                remedy=f"set liquid.model = 'lagrangian', or {still}",
             )
+        if self.pipe.has_plate:
+            rule, remedy = f"{why}, and the plate's do not", f"set ends = 'periodic', or {still}"
+            yield Problem(field="pipe.ends", value=self.pipe.ends, rule=rule, remedy=remedy)
+        if self.solids is not None and self.solids.held:
+            rule, remedy = f"{why}, and held solids do not go with them", f"{still}, or held out"
+            yield Problem(field="solids.held", value=True, rule=rule, remedy=remedy)
+        if np.any(self.motion.of_mode(0, _SAMPLES * self.end_time).displacement[:, 0]):
+            yield Problem(
+                field="motion.walls" if not flexes else "motion.vibration",
+                rule=f"{why}, which they do across the pipe only",
+                remedy=f"leave out the motion along x, or {still}",
+            )
+
+    @property
+    def axis(self) -> MovingAxis:
+        """The axis of the pipe as it moves."""
+        return MovingAxis(motion=self.motion, length=self.pipe.length)
 
     def _a_coupling_that_cannot_be(self) -> Iterable[Problem]:
         def problem(rule: str, remedy: str) -> Problem:

@@ -1,5 +1,6 @@
 """The liquids behind one interface: what carries the solids never asks which one it is."""
 
+from mpsdem.liquids.bending import bending
 from mpsdem.liquids.bins import section_count
 from mpsdem.liquids.build import build_liquid, node_layout_of, particle_layout
 from mpsdem.liquids.nodes import NodeLiquid
@@ -15,6 +16,7 @@ __all__ = [
     "NodeLiquid",
     "ParticleLiquid",
     "ProfileLiquid",
+    "bending",
     "build_liquid",
     "node_layout_of",
     "particle_layout",

@@ -16,6 +16,7 @@ from mpsdem.geometry import (
     push_plate_layout,
     ring_layout,
 )
+from mpsdem.liquids.bending import bending
 from mpsdem.liquids.bins import sample
 from mpsdem.liquids.nodes import NodeLiquid
 from mpsdem.liquids.particles import ParticleLiquid
@@ -132,6 +133,9 @@ def _of_particles(case: Case, liquid: Scene, plan: Plan) -> ParticleLiquid:
     velocity = np.where(inside[:, None], pipe_profile(case).velocity(layout.position), 0.0)
     if (mean := velocity[inside, 0].mean()) != 0:
         velocity *= liquid.bulk_velocity / mean  # the rings do not sample the profile evenly
+    axis = case.axis if case.motion.moves_walls else None
+    if axis is not None:
+        velocity = axis.to_laboratory(velocity, layout.position[:, 0], 0.0)
     particles = mps.LagrangianLiquid(
         position=layout.position,
         velocity=velocity,
@@ -152,6 +156,8 @@ def _of_particles(case: Case, liquid: Scene, plan: Plan) -> ParticleLiquid:
         speed=stirring_speed(case),
         threads=plan.threads,
     )
+    if axis is not None:
+        particles.bend(bending(axis, 0.0, 1.0))
     vacant = len(particles) - len(layout.kind)  # places for what a plate may bring in
     kind = np.concatenate([layout.kind, np.full(vacant, Kind.LIQUID, dtype=np.int8)])
     return ParticleLiquid(
@@ -163,4 +169,5 @@ def _of_particles(case: Case, liquid: Scene, plan: Plan) -> ParticleLiquid:
         pipe_length=pipe.length,
         sampling_radius=max(plan.smoothing_radius, 2.1 * layout.spacing),
         written=sample(len(kind), case.output.liquid_stride),
+        axis=axis,
     )

@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mpsdem._core import coupling, mps
+from mpsdem.case import MovingAxis
 from mpsdem.geometry import Kind
+from mpsdem.liquids.bending import bending
 from mpsdem.liquids.bins import (
     LAYERS,
     RINGS,
@@ -85,6 +87,10 @@ class ParticleLiquid:
         Over which the velocity at a point is averaged [m].
     written : (m,) intp ndarray
         Which particles the results hold.
+    axis : MovingAxis or None
+        Of a pipe whose walls move; the core then knows places and velocities in the laboratory.
+    time : float
+        Where a moving pipe is [s].
     """
 
     particles: mps.LagrangianLiquid
@@ -95,6 +101,8 @@ class ParticleLiquid:
     pipe_length: float
     sampling_radius: float
     written: NDArray[np.intp]
+    axis: MovingAxis | None = None
+    time: float = 0.0
     sound: bool = True
     tally: Tally = field(default_factory=Tally)
 
@@ -104,6 +112,9 @@ class ParticleLiquid:
 
     def advance(self, dt: float, exchange: coupling.Exchange | None = None) -> None:
         core = self.particles
+        if self.axis is not None:
+            core.bend(bending(self.axis, self.time, self.time + dt))
+            self.time += dt
         report = core.advance(dt) if exchange is None else exchange.advance(core, dt)
         tally = self.tally
         tally.time += dt
@@ -121,7 +132,13 @@ class ParticleLiquid:
     @property
     def count_in_bore(self) -> int:
         """Liquid particles that are where liquid can be."""
-        return int(self._in_bore(self.particles.position).sum())
+        return int(self._in_bore(self._position).sum())
+
+    @property
+    def _position(self) -> FloatArray:
+        """Where particles are, in the pipe."""
+        place: FloatArray = self.particles.position
+        return place if self.axis is None else self.axis.position(place, self.time)
 
     def _in_bore(self, x: FloatArray) -> NDArray[np.bool_]:
         """Which are liquid of the bore: none without a position, none at the plate."""
@@ -131,10 +148,12 @@ class ParticleLiquid:
         return result
 
     def velocity_at(self, position: FloatArray) -> FloatArray:
+        axis, time = self.axis, self.time
+        points = position if axis is None else axis.place(position, time)
         velocity: FloatArray = self.particles.velocity_at(
-            points=position, radius=self.sampling_radius
+            points=points, radius=self.sampling_radius
         )
-        return velocity
+        return velocity if axis is None else axis.from_pipe(velocity, position[:, 0], time)
 
     @property
     def _edges(self) -> FloatArray:
@@ -157,7 +176,9 @@ class ParticleLiquid:
 
     def frame(self) -> tuple[dict[str, ArrayLike], dict[str, ArrayLike]]:
         particles, tally = self.particles, self.tally
-        position, velocity = particles.position, particles.velocity
+        position, velocity = self._position, particles.velocity
+        if self.axis is not None:
+            velocity = self.axis.from_pipe(velocity, position[:, 0], self.time)
         pressure = particles.pressure
         liquid = self._in_bore(position)
         ring = np.digitize(np.hypot(*position[liquid, 1:].T), self._edges[1:-1])
@@ -196,9 +217,12 @@ class ParticleLiquid:
 
     def state(self) -> dict[str, Stored]:
         tally = {f"tally_{name}": getattr(self.tally, name) for name in Tally.__slots__}
-        return {**self.particles.state(), **tally}
+        return {**self.particles.state(), **tally, "time": self.time}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         self.particles.restore({k: v for k, v in state.items() if not k.startswith("tally_")})
+        self.time = float(state["time"])
+        if self.axis is not None:
+            self.particles.bend(bending(self.axis, self.time, self.time + 1.0))
         for name in Tally.__slots__:
             setattr(self.tally, name, state[f"tally_{name}"])

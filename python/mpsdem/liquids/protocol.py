@@ -25,7 +25,7 @@ class Liquid(Protocol):
         """Go on by dt [s]."""
 
     def velocity_at(self, position: FloatArray) -> FloatArray:
-        """Velocity at points, (n, 3) [m/s]."""
+        """Velocity at points, (n, 3) [m/s]; both seen from the pipe."""
 
     def static_fields(self) -> Mapping[str, ArrayLike]:
         """Fields of the results that do not change."""

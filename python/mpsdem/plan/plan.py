@@ -327,6 +327,8 @@ def _stages(case: Case, clock: Clock, turns: int) -> Iterator[Planned]:
 
 def _frame(case: Case) -> str:
     """In which frame the solids move, and why."""
+    if case.motion.moves_walls:
+        return f"{_moving_walls(case)}, which carry along what touches them"
     body = "the pipe is shaken as one body, and all is seen from it: solids feel"
     if case.liquid is None:
         return f"{body} its acceleration as a force"
@@ -334,6 +336,14 @@ def _frame(case: Case) -> str:
         f"{body} {lightness(case):.2g} of its acceleration as a force, as the pressure of the full "
         "pipe balances the rest"
     )
+
+
+def _moving_walls(case: Case) -> str:
+    """Why walls move."""
+    if case.motion.flexes:
+        modes = ", ".join(str(mode) for mode in case.motion.modes if mode > 0)
+        return f"the pipe flexes (mode {modes}) and is at rest in no frame, so its walls move"
+    return "walls move, as was asked for"
 
 
 def _liquid_stage(case: Case) -> Planned:
@@ -353,6 +363,8 @@ def _liquid_stage(case: Case) -> Planned:
         )
     else:
         asked = "were asked for"
+    if case.motion.moves_walls:
+        asked = f"give way to the walls: {_moving_walls(case)}"
     reason = f"about {particle_count(case)} {_LIQUID_KINDS[model]} {asked}; {_flow(case)}"
     return Planned(name="AdvanceLiquid", reason=reason)
 
@@ -430,7 +442,7 @@ def _left_out_of_the_shaking(case: Case) -> Iterator[Planned]:
     """What a pipe that is shaken as one body does without."""
     if case.motion.at_rest:
         yield Planned(name="motion", reason="the pipe is at rest")
-    elif case.liquid is not None:
+    elif case.liquid is not None and not case.motion.moves_walls:
         reason = (
             "a pipe that is full and shaken as one body moves no liquid in it: the pressure takes "
             "up the shaking as it does gravity"

@@ -248,15 +248,15 @@ def lightness(case: Case) -> float:
 def liquid_model(case: Case) -> str | None:
     """Name of the model that computes the liquid; None without any.
 
-    What is asked for, else particles for a plate to push, else the prescribed profile while it is
-    known; other pipes here being straight, full, rigid and periodic, a liquid that must be computed
-    is computed on fixed nodes.
+    What is asked for, else particles for a plate or moving walls to push, else the prescribed
+    profile while it is known; other pipes here being straight, full, rigid and periodic, a liquid
+    that must be computed is computed on fixed nodes.
     """
     if case.liquid is None:
         return None
     if case.liquid.model != "auto":
         return case.liquid.model
-    if case.pipe.has_plate:
+    if case.pipe.has_plate or case.motion.moves_walls:
         return "lagrangian"
     return "eulerian" if case.liquid.computed or must_feel_solids(case) else "profile"
 

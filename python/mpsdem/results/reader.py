@@ -226,9 +226,7 @@ class SolidsResults:
         (n, 3) float64 ndarray
             [m]; x wrapped before the pipe's displacement is added.
         """
-        pipe = self._results.case.motion.at(self._results.time[frame])
-        position: FloatArray = self.position[frame] + pipe.displacement
-        return position
+        return self._results.case.axis.place(self.position[frame], self._results.time[frame])
 
     def laboratory_velocity(self, frame: int) -> FloatArray:
         """Velocities of the centres as seen by someone who does not move with the pipe.
@@ -243,9 +241,8 @@ class SolidsResults:
         (n, 3) float64 ndarray
             [m/s].
         """
-        pipe = self._results.case.motion.at(self._results.time[frame])
-        velocity: FloatArray = self.velocity[frame] + pipe.velocity
-        return velocity
+        x, time = self.position[frame][:, 0], self._results.time[frame]
+        return self._results.case.axis.to_laboratory(self.velocity[frame], x, time)
 
     @property
     def spin(self) -> Field:
@@ -391,9 +388,9 @@ class LiquidResults:
         -------
         (m,) float64 ndarray
             p' + rho (g - a).x - G x [Pa], G the mean loss since the frame before, a the
-            acceleration of the pipe. Zero is the mean of p'
-            on the axis at the inlet. It is not periodic: from the outlet to the inlet it jumps by
-            what a pump gives.
+            acceleration of the pipe; where it flexes, that of a plug that follows it. Zero is the
+            mean of p' on the axis at the inlet. It is not periodic: from the outlet to the inlet
+            it jumps by what a pump gives.
         """
         pressure: FloatArray = self.pressure[frame]
         return pressure + self._split_off(frame, self.position[frame])
@@ -418,10 +415,11 @@ class LiquidResults:
         """What the pressure at some positions, (n, 3) [m], was stored without [Pa]."""
         case, time = self._results.case, self._results.time[frame]
         assert case.liquid is not None
-        body = np.array(case.gravity_vector) - case.motion.at(time).acceleration
-        per_metre = case.liquid.density * body
+        liquid = case.liquid
+        per_metre = liquid.density * np.array(case.gravity_vector)
         per_metre[0] -= self._results.pressure_gradient[frame]
-        split_off: FloatArray = position @ per_metre
+        turning = case.axis.plug_pressure(position, time, liquid.bulk_velocity)
+        split_off: FloatArray = position @ per_metre + liquid.density * turning
         return split_off
 
 

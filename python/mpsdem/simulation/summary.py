@@ -64,8 +64,9 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
         "liquid_model": plan.liquid_model,
         "coupling": _coupling(plan),
         "solids_count": plan.case.solids_count,
-        "dissipation": _mean(results, "dissipation"),
     }
+    if state.axis is None:
+        values["dissipation"] = _mean(results, "dissipation")
     values |= _of_liquid(plan, state, results) | _of_solids(plan, results)
     if plan.case.liquid is not None and plan.case.solids is not None:
         values |= _of_both(plan, results, values)
@@ -127,6 +128,9 @@ def _reasons(plan: Plan, values: dict[str, Any]) -> dict[str, str]:
         reasons |= {"bed_height": "no gravity"}
     if plan.case.solids is not None and values["plug_time"] is None:
         reasons |= dict.fromkeys(("plug_time", "plug_position"), "no plug stood in the pipe")
+    if plan.case.motion.moves_walls:
+        walls = "the work of moving walls is not counted"
+        reasons |= dict.fromkeys(("dissipation", "power_input"), walls)
     if values["momentum_error"] is None:
         reasons |= {"momentum_error": _no_ledger(plan)}
     return reasons
@@ -208,13 +212,14 @@ def _of_liquid(plan: Plan, state: State, results: Results) -> dict[str, Any]:
     case, liquid = plan.case, plan.case.liquid
     if liquid is None:
         return {}
-    means = (
+    means = [
         "bulk_velocity",
         "pressure_gradient",
         "pressure_gradient_friction",
         "pressure_gradient_solids",
-        "power_input",
-    )
+    ]
+    if state.axis is None:
+        means.append("power_input")
     values: dict[str, Any] = {
         **{name: _mean(results, name) for name in means},
         "pressure_gradient_static": float(-liquid.density * gravity(case)[0]),
@@ -301,6 +306,8 @@ def _of_both(plan: Plan, results: Results, values: dict[str, Any]) -> dict[str, 
 def _no_ledger(plan: Plan) -> str:
     if plan.case.pipe.has_plate:
         return "plate and outlet act through the pressure"
+    if plan.case.motion.flexes:
+        return "walls that flex push the liquid along the pipe"
     if plan.case.solids is None and plan.liquid_model == "profile":
         return "this liquid keeps no ledger"
     return "nothing took an impulse at the wall"
@@ -308,7 +315,8 @@ def _no_ledger(plan: Plan) -> str:
 
 def _momentum_errors(plan: Plan, state: State, results: Results) -> Iterator[float | None]:
     """Impulse that nothing explains over that of the walls: of the liquid, and of the solids."""
-    if plan.liquid_model in COMPUTED and not plan.case.pipe.has_plate:
+    walls_push = plan.case.pipe.has_plate or plan.case.motion.flexes
+    if plan.liquid_model in COMPUTED and not walls_push:
         yield _liquid_momentum_error(plan, results)
     if plan.case.solids is not None and not plan.case.solids.held:
         yield _solids_momentum_error(plan, state, results)
@@ -341,10 +349,17 @@ def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float 
     case, liquid, solids = plan.case, plan.case.liquid, state.solids
     assert case.solids is not None
     mass = case.solids.density * 4 / 3 * math.pi * results.solids.radius**3
-    gained = mass @ (solids.velocity - results.solids.velocity[0])
+    start = results.solids.velocity[0]
+    if state.axis is not None:
+        start = results.solids.laboratory_velocity(0)
+    gained = mass @ (solids.velocity - start)
     lightness = 1 - (liquid.density if liquid else 0.0) / case.solids.density
-    shaken = np.diff(case.motion.at(np.array([0.0, state.time])).velocity, axis=0)[0]
-    weight = mass.sum() * lightness * (gravity(case) * state.time - shaken)
+    weight = mass.sum() * lightness * gravity(case) * state.time
+    if state.axis is None:
+        shaken = np.diff(case.motion.at(np.array([0.0, state.time])).velocity, axis=0)[0]
+        weight -= mass.sum() * lightness * shaken
+    else:
+        weight += state.carried_impulse
     unexplained = gained - weight - state.drag_impulse - solids.wall_impulse
     friction = clear_gradient(case) * case.pipe.bore_volume * state.time
     of_walls = abs(friction) + float(np.linalg.norm(solids.wall_impulse))

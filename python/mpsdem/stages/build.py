@@ -12,7 +12,7 @@ from mpsdem._core import coupling, dem, geometry
 from mpsdem.case import Case, Material, Solids
 from mpsdem.contacts import Impact
 from mpsdem.geometry import place_solids
-from mpsdem.liquids import build_liquid
+from mpsdem.liquids import bending, build_liquid
 from mpsdem.plan import (
     DRAG_LAWS,
     Plan,
@@ -45,15 +45,25 @@ ContactLaw = dem.LinearSpring | dem.HertzMindlin | dem.HertzViscoelastic
 def build_state(case: Case, plan: Plan) -> State:
     """The state at time 0: solids at their places, at rest or with their first velocity."""
     liquid = build_liquid(case, plan)
+    axis = case.axis if case.motion.moves_walls else None
     if case.solids is None:
-        return State(liquid=liquid)
+        return State(liquid=liquid, axis=axis)
     solids, speed = case.solids, plan.impact_speed
     placement = place_solids(case)
     count = len(placement.radius)
     pair_law, wall_law = _contact_laws(case, speed)
+    position, velocity = placement.position, placement.velocity
+    wall: geometry.Cylinder | geometry.BentCylinder
+    if axis is None:
+        wall = geometry.Cylinder(radius=case.pipe.radius, velocity=np.zeros(3))
+    else:
+        velocity = axis.to_laboratory(velocity, position[:, 0], 0.0)
+        position = axis.place(position, 0.0)
+        wall = geometry.BentCylinder(radius=case.pipe.radius)
+        wall.bend(bending(axis, 0.0, 1.0), 0.0)
     population = dem.Solids(
-        position=placement.position,
-        velocity=placement.velocity,
+        position=position,
+        velocity=velocity,
         spin=placement.spin,
         radius=placement.radius,
         density=np.full(count, solids.density),
@@ -61,7 +71,7 @@ def build_state(case: Case, plan: Plan) -> State:
         wall_law=wall_law,
         pair_rolling_friction=solids.rolling_friction,
         wall_rolling_friction=solids.at_wall.rolling_friction,
-        walls=[geometry.Cylinder(radius=case.pipe.radius, velocity=np.zeros(3))],
+        walls=[wall],
         period=case.pipe.length,
         threads=plan.threads,
         lubrication=lubrication(case),
@@ -76,6 +86,7 @@ def build_state(case: Case, plan: Plan) -> State:
         population=population,
         liquid=liquid,
         exchange=exchange,
+        axis=axis,
         void_fraction=np.ones(count),  # where no stage looks for neighbors, a solid is alone
     )
 
@@ -118,6 +129,7 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                     substeps=plan.clock.substeps,
                     dry=liquid is None,
                     pipe=pipe,
+                    bulk_velocity=liquid.bulk_velocity if liquid else 0.0,
                 )
             case "HoldSolids", _, _:
                 yield HoldSolids()

@@ -56,7 +56,8 @@ class Record:
             diagnostics |= of_liquid
             self._split_gradient(state, diagnostics)
             diagnostics["liquid_flux"] = self._liquid_flux(state, diagnostics)
-        self._energy(state, diagnostics, interval)
+        if state.axis is None:
+            self._energy(state, diagnostics, interval)
         if not self.motion.at_rest:
             pipe = self.motion.at(state.time)
             diagnostics["pipe_displacement"] = pipe.displacement
@@ -71,9 +72,10 @@ class Record:
         """Fields of the solids, and their numbers; forces as means since the last frame."""
         solids = state.solids
         velocity, mass, wall_impulse = solids.velocity, solids.mass, solids.wall_impulse
+        seen = state.from_pipe(velocity)
         fields: Fields = {
-            "position": solids.position,
-            "velocity": velocity,
+            "position": state.position,
+            "velocity": seen,
             "spin": solids.spin,
             "laps": solids.laps,
             **self._sections(state),
@@ -81,7 +83,8 @@ class Record:
         numbers: Fields = {
             "solids_mean_velocity": np.average(velocity[:, 0], weights=mass),
             "largest_overlap": state.largest_overlap,
-            "kinetic_energy": solids.kinetic_energy,
+            "kinetic_energy": solids.kinetic_energy
+            + float(mass @ ((seen**2).sum(axis=1) - (velocity**2).sum(axis=1))) / 2,
             "elastic_energy": solids.elastic_energy,
             "contacts": len(solids.contacts()["first"]),
         }
@@ -90,7 +93,7 @@ class Record:
             slip = state.liquid_velocity - velocity
             force = (mass * state.drag_rate)[:, None] * slip
             fields["void_fraction"] = state.void_fraction
-            fields["liquid_velocity"] = state.liquid_velocity
+            fields["liquid_velocity"] = state.from_pipe(state.liquid_velocity)
             fields["drag_force"] = force
             drag = force.sum(axis=0)
             numbers["void_fraction_clipped"] = state.void_fraction_clipped

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mpsdem._core import coupling, dem
+from mpsdem.case import MovingAxis
 from mpsdem.liquids import ComputedLiquid, Liquid
 
 FloatArray = NDArray[np.float64]
@@ -41,10 +42,14 @@ class State:
         What carries them; None in a dry scene.
     exchange : coupling.Exchange or None
         Between the two; None where the liquid does not feel the solids.
+    axis : MovingAxis or None
+        Of a pipe whose walls move; the solids then know places and velocities in the laboratory.
     step : int
         Coupling steps since the start, the one under way included.
     time : float
         Time at the end of that step [s].
+    solids_time : float
+        Time at which the solids stand [s].
     liquid_velocity : (n, 3) float64 ndarray
         Liquid at the solids [m/s].
     void_fraction : (n,) float64 ndarray
@@ -72,6 +77,9 @@ class State:
         gave [-].
     liquid_volume_error : float
         Largest error since then of the liquid's volume, over that volume [-].
+    carried_impulse : (3,) float64 ndarray
+        Of the pressure that turns the liquid with moving walls, on all solids since the start
+        [N s].
     shaking_work : float
         Work of the pipe's motion on the solids since the start, seen from the pipe [J].
     frame_time : float
@@ -89,8 +97,10 @@ class State:
     population: dem.Solids | None = None
     liquid: Liquid | None = None
     exchange: coupling.Exchange | None = None
+    axis: MovingAxis | None = None
     step: int = 0
     time: float = 0.0
+    solids_time: float = 0.0
     liquid_velocity: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     void_fraction: FloatArray = field(default_factory=lambda: np.zeros(0))
     drag_rate: FloatArray = field(default_factory=lambda: np.zeros(0))
@@ -106,6 +116,7 @@ class State:
     drags_outside: int = 0
     exchange_error: float = 0.0
     liquid_volume_error: float = 0.0
+    carried_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
     shaking_work: float = 0.0
     frame_time: float = 0.0
     frame_drag_impulse: FloatArray = field(default_factory=lambda: np.zeros(3))
@@ -122,6 +133,24 @@ class State:
         """The solids, for the stages that need some."""
         assert self.population is not None
         return self.population
+
+    @property
+    def position(self) -> FloatArray:
+        """Centres of the solids, seen from the pipe (n, 3) [m]."""
+        place: FloatArray = self.solids.position
+        return place if self.axis is None else self.axis.position(place, self.solids_time)
+
+    def from_pipe(self, velocity: FloatArray) -> FloatArray:
+        """Velocities at the solids, seen from the pipe (n, 3) [m/s]."""
+        if self.axis is None:
+            return velocity
+        return self.axis.from_pipe(velocity, self.solids.position[:, 0], self.solids_time)
+
+    def to_laboratory(self, velocity: FloatArray) -> FloatArray:
+        """The way back (n, 3) [m/s]; the same where no wall moves."""
+        if self.axis is None:
+            return velocity
+        return self.axis.to_laboratory(velocity, self.solids.position[:, 0], self.solids_time)
 
     @property
     def partners(self) -> tuple[ComputedLiquid, coupling.Exchange]:
@@ -149,7 +178,7 @@ def check(state: State, pipe_radius: float) -> None:
     """
     if state.population is None:
         return
-    position = state.solids.position
+    position = state.position
     inside = np.hypot(position[:, 1], position[:, 2]) < pipe_radius
     sound = {
         "velocity": np.isfinite(state.solids.velocity).all(axis=1),

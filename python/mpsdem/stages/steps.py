@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from mpsdem._core import coupling, dem
-from mpsdem.case import Motion, Pipe
+from mpsdem.case import Motion, MovingAxis, Pipe
+from mpsdem.liquids import bending
 from mpsdem.plan import DragLaw
 from mpsdem.stages.state import FloatArray, SimulationDiverged, State, check
 
@@ -61,7 +62,7 @@ class SampleLiquid:
 
     def __call__(self, state: State, _dt: float) -> None:
         assert state.liquid is not None
-        state.liquid_velocity = state.liquid.velocity_at(state.solids.position)
+        state.liquid_velocity = state.to_laboratory(state.liquid.velocity_at(state.position))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,7 +106,7 @@ class FindVoidFraction:
     def __call__(self, state: State, _dt: float) -> None:
         solids = state.solids
         state.void_fraction, clipped = self.average.at_solids(
-            position=solids.position, radius=solids.radius, threads=self.threads
+            position=state.position, radius=solids.radius, threads=self.threads
         )
         state.void_fraction_clipped += clipped
 
@@ -149,6 +150,7 @@ class AdvanceSolids:
 
     Seen from a pipe that is shaken as one body, its acceleration acts as gravity does: on solids in
     a liquid with what buoyancy leaves of it. Over a step it is constant, of the same impulse.
+    Where walls move, the pressure that turns the liquid with them pushes the solids, too.
     """
 
     name: ClassVar[str] = "AdvanceSolids"
@@ -159,19 +161,40 @@ class AdvanceSolids:
     substeps: int
     dry: bool
     pipe: Pipe
+    bulk_velocity: float  # [m/s] of the liquid
 
     def __call__(self, state: State, dt: float) -> None:
+        if state.axis is not None:
+            self._with_walls(state, state.axis, dt)
+        elif self.motion.at_rest:
+            self._advance(state, dt, np.zeros(3))
+        else:
+            shaking, length = self._shaking(state.time, dt), self.pipe.length
+            before = _first_moment(state.solids, length)
+            self._advance(state, dt, shaking)
+            way = _first_moment(state.solids, length) - before
+            state.shaking_work += float(shaking @ way)
+
+    def _with_walls(self, state: State, axis: MovingAxis, dt: float) -> None:
+        """Between walls that move, seen from the laboratory."""
+        start, end = state.solids_time, state.time
+        state.solids.bend(bending(axis, start, end))
+        gain = axis.plug_gain(state.position, start, end, self.bulk_velocity)
+        push = (1 - self.lightness) * gain
+        state.carried_impulse = state.carried_impulse + state.solids.mass @ push
+        self._advance(state, dt, push / dt, gain / dt)
+
+    def _advance(
+        self, state: State, dt: float, push: FloatArray, gain: FloatArray | None = None
+    ) -> None:
+        """Under a further force over mass, in a liquid that gains velocity, both [m/s2]."""
         solids = state.solids
-        shaking = np.zeros(3) if self.motion.at_rest else self._shaking(state.time, dt)
-        self._force(state, np.tile(self.lightness * self.gravity + shaking, (len(solids), 1)))
-        if not self.motion.at_rest:
-            before = _first_moment(solids, self.pipe.length)
+        acceleration = np.tile(self.lightness * self.gravity, (len(solids), 1)) + push
+        self._force(state, acceleration, gain)
         report = solids.advance(dt / self.substeps, self.substeps)
+        state.solids_time = state.time
         if not report.finite:
             check(state, self.pipe.radius)
-        if not self.motion.at_rest:
-            way = _first_moment(solids, self.pipe.length) - before
-            state.shaking_work += float(shaking @ way)
         if state.exchange is not None:
             state.liquid_velocity = solids.liquid_velocity
         state.drag_impulse = state.drag_impulse + solids.drag_impulse.sum(axis=0)
@@ -183,7 +206,7 @@ class AdvanceSolids:
         force: FloatArray = -self.lightness * (after - before) / dt
         return force
 
-    def _force(self, state: State, acceleration: FloatArray) -> None:
+    def _force(self, state: State, acceleration: FloatArray, gain: FloatArray | None) -> None:
         solids = state.solids
         if self.dry:
             solids.set_forcing(acceleration=acceleration)
@@ -193,6 +216,8 @@ class AdvanceSolids:
                 liquid_velocity=state.liquid_velocity,
                 drag_rate=state.drag_rate,
                 added_mass=self.added_mass,
+                liquid_acceleration=gain,
+                relaxation=None if gain is None else np.zeros(len(solids)),
             )
         else:
             of_liquid, relaxation = state.exchange.response(

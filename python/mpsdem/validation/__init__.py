@@ -17,6 +17,7 @@ from mpsdem.validation import (
     eulerian,
     head_loss,
     impacts,
+    motion,
     particle_liquid,
     pipe,
     push_plate,
@@ -37,6 +38,7 @@ CHECKS = collect(
     particle_liquid.checks(),
     eulerian.checks(),
     push_plate.checks(),
+    motion.checks(),
     two_way.checks(),
     conveying.checks(),
 )
