@@ -94,6 +94,31 @@ def test_solids_that_float_make_their_bed_under_the_roof(tmp_path):
     assert fallen(tmp_path / "floor", light).regime.regime == "heterogeneous"
 
 
+@pytest.mark.parametrize(
+    ("gathering", "stands", "state"),
+    [(0.0, False, "free"), (0.07, False, "filling"), (0.1, True, "plug")],
+)
+def test_solids_that_gather_fill_the_pipe_and_block_it_once_they_stand(
+    tmp_path, gathering, stands, state
+):
+    narrow = Case(**CASE.model_dump() | {"pipe": CASE.pipe.model_dump() | {"radius": 0.03}})
+    with open_writer(tmp_path, narrow) as writer:
+        for time in TIMES:
+            fields = frame(time, narrow)
+            spread = np.linspace(-0.3, 0.3, 64) * (1 - gathering * time)
+            fields["solids"]["position"][:] = np.outer(2.0 + spread, [1.0, 0.0, 0.0])
+            fields["solids"]["velocity"][:, 0] = 0.0 if stands else 0.3
+            fields["diagnostics"]["bulk_velocity"] = 1.0
+            writer.append(time, **fields)
+    blockage = survey(Results(tmp_path)).blockage
+    assert blockage.state == state
+    assert blockage.trends["fullest_fraction"].rises == (gathering > 0)
+    assert (blockage.plug is not None) == stands
+    if stands:
+        assert blockage.plug.position == pytest.approx(2.0, abs=0.1)
+        assert 6.0 < blockage.plug.time < 8.0
+
+
 def test_a_vertical_pipe_has_no_bed(tmp_path):
     pipe = CASE.pipe.model_dump() | {"inclination": "90 deg"}
     found = fallen(tmp_path, Case(**CASE.model_dump() | {"pipe": pipe}))
