@@ -125,6 +125,7 @@ def _of_solids(key: str, *values: float) -> dict[str, dict[str, Any]]:
 def _solids() -> Iterator[Row]:
     ratios = {f"{r:g}": {"solids": {"density": 1000.0 * r}} for r in (0.1, 1.0, 20.0)}
     yield from _each("density ratio", ratios)
+
     def packed(share: float) -> dict[str, Any]:
         return {"count": None, "volume_fraction": share}
 
@@ -152,7 +153,8 @@ def _solids() -> Iterator[Row]:
 
 
 def _contacts() -> Iterator[Row]:
-    yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e4), (*ALL, DRY))
+    yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e4), outcome="refused")
+    yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e5), (*ALL, DRY))
     yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e12), (*ALL, DRY), steps=30)
     yield from _each("restitution", _of_solids("restitution", 0.01, 1.0), (*ALL, DRY))
     yield from _each("friction", _of_solids("friction", 0.0, 2.0), (*ALL, DRY))
@@ -162,7 +164,7 @@ def _contacts() -> Iterator[Row]:
             f"{law}, E {modulus:g}, e {restitution:g}": {
                 "solids": contact | {"youngs_modulus": modulus, "restitution": restitution}
             }
-            for modulus, restitution in ((1e4, 0.01), (1e10, 1.0))
+            for modulus, restitution in ((1e5, 0.01), (1e10, 1.0))
         }
         yield from _each("contact law", extremes, (PROFILE, DRY), steps=50)
 
@@ -226,14 +228,14 @@ def _motion() -> Iterator[Row]:
         "50 Hz, 1 mm, across": shaken("z", 50.0, 1e-3),
         "1 Hz, one bore, across": shaken("z", 1.0, BORE),
         "1 Hz, one bore, along": shaken("x", 1.0, BORE),
-        "50 Hz, one bore, across": shaken("z", 50.0, BORE),
+        "50 Hz, one bore, across": shaken("z", 50.0, BORE) | {"solids": {"youngs_modulus": 1e8}},
     }
     yield from _each("vibration", parts)
     bent = {
         "50 Hz, 1 mm, mode 2": shaken("z", 50.0, 1e-3, mode=2),
         "1 Hz, one bore, mode 2": shaken("z", 1.0, BORE, mode=2),
     }
-    yield from _each("vibration", bent, (PROFILE, LAGRANGIAN))
+    yield from _each("vibration", bent, (LAGRANGIAN,), outcome="refused")
 
 
 def _numerics() -> Iterator[Row]:
