@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from mpsdem import _core
 from mpsdem.analysis.correlations import durand_deposition_velocity
-from mpsdem.case import Case
+from mpsdem.case import Case, CaseError, Problem
 from mpsdem.plan.clock import Clock
 from mpsdem.plan.limits import (
     SOLID_RATE,
@@ -160,6 +160,7 @@ def make_plan(case: Case) -> Plan:
         smoothing radius is too small for what liquid and solids exchange.
     """
     speed = impact_speed(case)
+    _require_contacts_that_hold(case, speed)
     of_solids = solid_limits(case, speed)
     of_coupling = coupling_limits(case, of_solids)
     of_liquid = tuple(liquid_limits(case))
@@ -552,14 +553,45 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         )
     if solids.held:
         return
-    pair, wall = impacts(case, diameter=solids.largest_diameter, speed=speed)
-    overlap = max(pair.overlap, wall.overlap)
-    if solids.contact == "linear_spring":
-        pair_stiffness, wall_stiffness = spring_stiffness(case, speed)
-        overlap = max(pair.on_spring(pair_stiffness)[0], wall.on_spring(wall_stiffness)[0])
-    share = overlap / (solids.largest_diameter / 2)
+    share = _depth(case, speed)
     if share > SOFT:
         stiffer = "solids.youngs_modulus" if solids.contact != "linear_spring" else "the stiffness"
         if case.fidelity.stiffness_factor < 1:
             stiffer = "fidelity.stiffness_factor"
         yield f"a collision at {speed:.3g} m/s goes {share:.0%} of the radius deep: raise {stiffer}"
+
+
+def _depth(case: Case, speed: float) -> float:
+    """Depth of a collision of the largest solids at a speed [m/s], over their radius [-]."""
+    solids = solids_of(case)
+    pair, wall = impacts(case, diameter=solids.largest_diameter, speed=speed)
+    overlap = max(pair.overlap, wall.overlap)
+    if solids.contact == "linear_spring":
+        pair_stiffness, wall_stiffness = spring_stiffness(case, speed)
+        overlap = max(pair.on_spring(pair_stiffness)[0], wall.on_spring(wall_stiffness)[0])
+    return overlap / (solids.largest_diameter / 2)
+
+
+def _require_contacts_that_hold(case: Case, speed: float) -> None:
+    """Refuse contacts so soft that a solid would go through what it hits.
+
+    In a dry case the speed is an upper bound, that of a fall along the whole pipe.
+    """
+    solids = case.solids
+    if solids is None or solids.held or case.liquid is None:
+        return
+    if (share := _depth(case, speed)) <= 1:
+        return
+    given = solids.normal_stiffness is not None
+    field = "normal_stiffness" if given else "youngs_modulus"
+    least = getattr(solids, field) * share ** (2.0 if given else 2.5)  # spring; Hertz
+    unit = "N/m" if given else "Pa"
+    problem = Problem(
+        field=f"solids.{field}",
+        value=getattr(solids, field),
+        unit=unit,
+        rule=f"must be >= {least:.2g} {unit}: a collision at {speed:.3g} m/s would go {share:.0%} "
+        "of the radius deep, through what it hits",
+        remedy="raise it, or fidelity.stiffness_factor if that is below 1",
+    )
+    raise CaseError([problem])

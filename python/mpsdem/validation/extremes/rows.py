@@ -98,6 +98,7 @@ def rows() -> tuple[Row, ...]:
             _contacts(),
             _flow(),
             _pipe(),
+            _motion(),
             _numerics(),
             _sizes(),
         )
@@ -124,13 +125,22 @@ def _of_solids(key: str, *values: float) -> dict[str, dict[str, Any]]:
 def _solids() -> Iterator[Row]:
     ratios = {f"{r:g}": {"solids": {"density": 1000.0 * r}} for r in (0.1, 1.0, 20.0)}
     yield from _each("density ratio", ratios)
-    packed = {"count": None, "volume_fraction": 0.6}
+
+    def packed(share: float) -> dict[str, Any]:
+        return {"count": None, "volume_fraction": share}
+
     crowds: dict[str, Mapping[str, Any]] = {
         "0": {"solids": None},
-        "0.3": {"solids": {"count": None, "volume_fraction": 0.3}},
-        "0.6": {"solids": packed},
+        "0.3": {"solids": packed(0.3)},
+        "0.57, random close packing": {"solids": packed(0.57)},
     }
-    yield from _each("solid fraction", crowds)
+    yield from _each("solid fraction", crowds, steps=50)
+    fine = {"pipe": {"length": 0.6 * BORE}, "solids": packed(0.6) | {"diameter": _DIAMETER / 2}}
+    yield from _each("solid fraction", {"0.6 in twenty diameters": fine}, COMPUTED, steps=20)
+    dense = {"solids": packed(0.6)}
+    yield from _each(
+        "solid fraction", {"0.6 in ten diameters": dense}, (PROFILE,), outcome="refused"
+    )
     plug = {"count": None, "volume_fraction": 0.2, "arrangement": {"start": 0.3, "end": 0.65}}
     yield from _each("full plug", {"0.57 of a third": {"solids": plug}})
     alone = {"fidelity": {"coupling": "two-way"}, "solids": {"count": 1}}
@@ -143,7 +153,8 @@ def _solids() -> Iterator[Row]:
 
 
 def _contacts() -> Iterator[Row]:
-    yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e4), (*ALL, DRY))
+    yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e4), outcome="refused")
+    yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e5), (*ALL, DRY))
     yield from _each("Young's modulus", _of_solids("youngs_modulus", 1e12), (*ALL, DRY), steps=30)
     yield from _each("restitution", _of_solids("restitution", 0.01, 1.0), (*ALL, DRY))
     yield from _each("friction", _of_solids("friction", 0.0, 2.0), (*ALL, DRY))
@@ -153,7 +164,7 @@ def _contacts() -> Iterator[Row]:
             f"{law}, E {modulus:g}, e {restitution:g}": {
                 "solids": contact | {"youngs_modulus": modulus, "restitution": restitution}
             }
-            for modulus, restitution in ((1e4, 0.01), (1e10, 1.0))
+            for modulus, restitution in ((1e5, 0.01), (1e10, 1.0))
         }
         yield from _each("contact law", extremes, (PROFILE, DRY), steps=50)
 
@@ -201,6 +212,30 @@ def _pipe() -> Iterator[Row]:
     for value, factor, outcome in (("largest", 0.999999, "survived"), ("larger", 1.01, "refused")):
         plate = {"pipe": {"ends": "push-plate", "stroke": factor * longest}}
         yield from _each("stroke of the push plate", {value: plate}, (LAGRANGIAN,), outcome=outcome)
+
+
+def _motion() -> Iterator[Row]:
+    def shaken(direction: str, frequency: float, amplitude: float, mode: int = 0) -> dict[str, Any]:
+        part = {
+            "direction": direction,
+            "frequency": frequency,
+            "amplitude": amplitude,
+            "mode": mode,
+        }
+        return {"motion": {"vibration": [part]}}
+
+    parts = {
+        "50 Hz, 1 mm, across": shaken("z", 50.0, 1e-3),
+        "1 Hz, one bore, across": shaken("z", 1.0, BORE),
+        "1 Hz, one bore, along": shaken("x", 1.0, BORE),
+        "50 Hz, one bore, across": shaken("z", 50.0, BORE) | {"solids": {"youngs_modulus": 1e8}},
+    }
+    yield from _each("vibration", parts)
+    bent = {
+        "50 Hz, 1 mm, mode 2": shaken("z", 50.0, 1e-3, mode=2),
+        "1 Hz, one bore, mode 2": shaken("z", 1.0, BORE, mode=2),
+    }
+    yield from _each("vibration", bent, (LAGRANGIAN,), outcome="refused")
 
 
 def _numerics() -> Iterator[Row]:

@@ -86,7 +86,7 @@ def _timed(case: Case, steps: int) -> Case:
     longest = make_plan(case.with_(end_time=_EVER, output={"every": _EVER}))
     step = (longest.liquid_step or longest.coupling_step).value
     if case.liquid is None and case.solids is not None:  # nothing but the output limits its turns
-        step = _CROSSING * case.solids.smallest_diameter / longest.impact_speed
+        step = _CROSSING * case.solids.smallest_diameter / (longest.impact_speed or 1.0)
     frames = min(_FRAMES, steps)
     end = steps * step
     return case.with_(end_time=end, output={"every": end / frames})
