@@ -214,15 +214,17 @@ def test_a_solid_rebounds_from_a_wall_that_comes_towards_it_with_its_speed_added
 # --- liquid ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("coupling", ["one-way", "two-way"])
-def test_moving_walls_and_a_force_in_the_frame_of_the_pipe_are_the_same_motion(run, coupling):
+@pytest.mark.parametrize(("coupling", "apart"), [("one-way", 5e-5), ("two-way", 1e-3)])
+def test_moving_walls_and_a_force_in_the_frame_of_the_pipe_are_the_same_motion(
+    run, coupling, apart
+):
     frame, moved = (
         run(case(STRONG, walls=walls, coupling=coupling, solids=NODULE))
         for walls in ("fixed", "moving")
     )
     a, b = frame.solids.position[:, 0], moved.solids.position[:, 0]
     assert np.ptp(a[:, 1]) > 0.03
-    np.testing.assert_allclose(b, a, atol=0.001)
+    np.testing.assert_allclose(b, a, atol=apart)
     for name in ("pressure_gradient", "pressure_gradient_friction"):
         x, y = (results.diagnostics[name][-10:].mean() for results in (frame, moved))
         assert y == pytest.approx(x, rel=0.01)
