@@ -1,0 +1,49 @@
+"""Fill the tables of docs/reproduction.md: ``python -m mpsdem.validation.reproduction RUNS``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from rich.console import Console
+
+from mpsdem.validation.reproduction.horizontal import HORIZONTAL
+from mpsdem.validation.reproduction.inclined import INCLINED
+from mpsdem.validation.reproduction.page import costs, table
+from mpsdem.validation.reproduction.runs import LEVELS, scenes
+
+DOCUMENT = Path("docs", "reproduction.md")
+
+_out = Console(soft_wrap=True, markup=False, highlight=False)
+
+
+def main(arguments: list[str]) -> int:
+    """Read the runs in a directory, make those that are missing, and write the tables."""
+    options = {argument for argument in arguments if argument.startswith("--")}
+    if len(arguments) - len(options) != 1 or options - {"--as-is"}:
+        _out.print("usage: python -m mpsdem.validation.reproduction RUNS_DIRECTORY [--as-is]")
+        return 2
+    directory = Path(next(argument for argument in arguments if argument not in options))
+    of = {
+        level: scenes(level, directory, Path("cases"), make="--as-is" not in options)
+        for level in LEVELS
+    }
+    tables = {"A": table(HORIZONTAL, of), "B": table(INCLINED, of), "cost": costs(of)}
+    for name, lines in tables.items():
+        _out.print(f"{name}\n{lines}")
+    if DOCUMENT.exists():
+        DOCUMENT.write_text(filled(DOCUMENT.read_text("utf-8"), tables), "utf-8")
+    return 0
+
+
+def filled(text: str, tables: dict[str, str]) -> str:
+    """A page, with what stands between the marks of each table replaced by the table."""
+    for name, lines in tables.items():
+        begin, end = f"<!-- table {name} -->", f"<!-- end {name} -->"
+        before, rest = text.split(begin)
+        text = f"{before}{begin}\n{lines}{end}{rest.split(end)[1]}"
+    return text
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
