@@ -31,7 +31,8 @@ std::span<const Real> one_or_many(const std::variant<Real, Array<Real>>& a, cons
 
 using LawArgument =
     std::variant<const dem::LinearSpring*, const dem::HertzMindlin*, const dem::HertzViscoelastic*>;
-using WallArgument = std::variant<const geometry::Plane*, const geometry::Cylinder*, const geometry::BentCylinder*>;
+using WallArgument =
+    std::variant<const geometry::Plane*, const geometry::Cylinder*, const geometry::BentCylinder*>;
 
 /// The value behind a variant of pointers: pybind11 fills those, never a value without a default.
 template <class Value, class Argument>

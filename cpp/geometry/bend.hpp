@@ -93,7 +93,8 @@ public:
     };
 
     Bending() = default;
-    Bending(std::vector<Mode> modes, Real duration) : modes_(std::move(modes)), duration_(duration) {
+    Bending(std::vector<Mode> modes, Real duration)
+        : modes_(std::move(modes)), duration_(duration) {
         require(duration > 0 && std::isfinite(duration), "Bending: duration must be > 0 s");
         for (const Mode& mode : modes_) {
             require(mode.wave_number >= 0 && std::isfinite(mode.wave_number),

@@ -254,7 +254,7 @@ AdvanceReport Liquid::advance(Real dt, Loading* loading) {
         report.unexplained += unexplained_ * length / dt;
         report.convection_error += convection_error_ * length / dt;
     }
-    load_ = {}; // its spans are the solids'
+    load_ = {};  // its spans are the solids'
     bend_to(dt); // to the last bit, where the next advance begins
     return report;
 }

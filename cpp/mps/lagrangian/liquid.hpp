@@ -51,9 +51,9 @@ struct AdvanceReport {
     int substeps = 0;
     int halvings = 0; // substeps halved after a failed solve
     SolveTally solve;
-    Real mean_gradient = 0;    // [Pa/m] loss of pressure along the pipe, mean over the call
-    Real friction = 0;         // [Pa/m] that walls and viscosity take up, mean over the call
-    Real unexplained = 0;      // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
+    Real mean_gradient = 0; // [Pa/m] loss of pressure along the pipe, mean over the call
+    Real friction = 0;      // [Pa/m] that walls and viscosity take up, mean over the call
+    Real unexplained = 0;   // [Pa/m] of the axial momentum: what p' does, and in a pipe must not
     Real bending = 0; // [Pa/m] part of mean_gradient: the loss along a moving axis that slopes
     Real convection_error = 0; // [Pa/m] that particles failed to carry along, and were given back
     std::size_t clamped = 0;   // pressures cut to the limit
@@ -70,8 +70,8 @@ struct AdvanceReport {
     bool sound = true;        // false: the pressure could not be solved, or speeds overflowed
 };
 
-/// The particle liquid of a full, straight pipe, rigid or bending: MPS proper. The pipe is periodic, or a
-/// plate pushes the liquid through it.
+/// The particle liquid of a full, straight pipe, rigid or bending: MPS proper. The pipe is
+/// periodic, or a plate pushes the liquid through it.
 ///
 /// A step finds the neighbors once and takes every operator there:
 ///
@@ -103,10 +103,10 @@ struct AdvanceReport {
 /// drag and walls took from its flux.
 ///
 /// Walls that move (`bend`) carry their particles along, each cross-section as one body. All
-/// operators see where particles are; what counts from the axis (mixing length, the order in memory,
-/// the coarse space of the solver) sees them in the section, as in a straight pipe. The wall's
-/// velocity enters the divergence, its shear and the laminar Laplacian. As of every acceleration
-/// that is known, that of a plug which follows the axis w(x, t) is split off,
+/// operators see where particles are; what counts from the axis (mixing length, the order in
+/// memory, the coarse space of the solver) sees them in the section, as in a straight pipe. The
+/// wall's velocity enters the divergence, its shear and the laminar Laplacian. As of every
+/// acceleration that is known, that of a plug which follows the axis w(x, t) is split off,
 ///
 ///   A = w_tt + 2 U w_xt + U^2 w_xx,   p = p' - rho (A.r + h(x)),  dh/dx = -A.w_x
 ///
