@@ -28,7 +28,7 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
     std::size_t found = 0;
     for (const Vec3& x : position) {
         Lanes totals{};
-        grid_->around(cells_->of(x), [&](Index begin, Index end, int image) {
+        grid_.around(cells_.of(x), [&](Index begin, Index end, int image) {
             const Vector<Lanes> seen = broadcast(Vec3{x.x + image * period, x.y, x.z});
             if (point_.size() < found + (end - begin)) {
                 point_.resize(2 * found + (end - begin));
@@ -63,11 +63,11 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
 
 void Footprints::sort(const mps::LiquidPoints& points) {
     const Real reach = kernel_.radius;
-    if (!grid_ || points.period != period_) grid_.emplace(reach, points.period);
+    if (points.period != period_) grid_ = neighbors::CellGrid(reach, points.period);
     period_ = points.period;
     sorted_from_ = points.position.data();
-    cells_.emplace(points.position, reach, points.period, 1);
-    grid_->sort(points.position, *cells_, order_, 1);
+    cells_ = neighbors::Cells(points.position, reach, points.period, 1);
+    grid_.sort(points.position, cells_, order_, 1);
     row_.assign(order_.size() + lane_count, Lanes{});
     for (std::size_t k = 0; k < order_.size(); ++k) {
         const Vec3& x = points.position[order_[k]];

@@ -4,7 +4,6 @@
 #include "mps/load.hpp"
 #include "neighbors/cell_grid.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace mpsdem::coupling {
@@ -18,7 +17,7 @@ namespace mpsdem::coupling {
 /// impulse. With the same weights a solid samples the liquid.
 class Footprints {
 public:
-    explicit Footprints(SmoothingKernel kernel) : kernel_(kernel) {}
+    explicit Footprints(SmoothingKernel kernel) : kernel_(kernel), grid_(kernel.radius, 0) {}
 
     /// Find them for solids at `position`; positions must be finite, and x within the period.
     void find(const mps::LiquidPoints& points, std::span<const Vec3> position);
@@ -42,8 +41,8 @@ private:
     void sort(const mps::LiquidPoints& points);
 
     SmoothingKernel kernel_;
-    std::optional<neighbors::CellGrid> grid_;
-    std::optional<neighbors::Cells> cells_;
+    neighbors::CellGrid grid_;
+    neighbors::Cells cells_;
     const Vec3* sorted_from_ = nullptr; // the points that stand sorted, where they are fixed
     Real period_ = 0;                   // [m]
     std::vector<Index> order_;

@@ -13,6 +13,7 @@ namespace mpsdem::neighbors {
 /// Cubic cells over the box of some points; x may be periodic. Numbers run with x slowest, so that
 /// points sorted by cells form slabs along a pipe.
 struct Cells {
+    Cells() = default;
     /// `period` [m] along x, 0 for none; positions must be finite and in [0, period). Cells are at
     /// least `cell_size` wide.
     Cells(std::span<const Vec3> position, Real cell_size, Real period, int threads);
