@@ -480,7 +480,8 @@ def test_sections_hold_all_the_solids_and_their_flow(tmp_path):
 
 def test_drags_beyond_their_law_are_counted(tmp_path):
     """Schiller and Naumann's goes up to a Reynolds number of 2e5; here it is 6e5."""
-    scene = case(solids={"drag": "schiller_naumann"}, liquid={"bulk_velocity": 60.0})
+    stiff = {"drag": "schiller_naumann", "youngs_modulus": 1e9}  # impacts at 60 m/s
+    scene = case(solids=stiff, liquid={"bulk_velocity": 60.0})
     scene = scene.with_(end_time=1e-3, output={"every": 1e-3}, liquid={"model": "profile"})
     summary = Simulation(scene, tmp_path).run(bar=False).summary
     assert summary["drag_outside"] > 0.9
