@@ -7,7 +7,8 @@ with an error bar, and bounds within which the statement holds.
 from mpsdem.validation.reproduction.horizontal import HORIZONTAL
 from mpsdem.validation.reproduction.inclined import INCLINED
 from mpsdem.validation.reproduction.measured import Measured
+from mpsdem.validation.reproduction.reasons import REASONS
 from mpsdem.validation.reproduction.scene import Instant, Scene
 from mpsdem.validation.reproduction.statement import Statement
 
-__all__ = ["HORIZONTAL", "INCLINED", "Instant", "Measured", "Scene", "Statement"]
+__all__ = ["HORIZONTAL", "INCLINED", "REASONS", "Instant", "Measured", "Scene", "Statement"]

@@ -7,12 +7,15 @@ from pathlib import Path
 
 from rich.console import Console
 
+from mpsdem.validation.reproduction.figures import of_horizontal, of_inclined
 from mpsdem.validation.reproduction.horizontal import HORIZONTAL
 from mpsdem.validation.reproduction.inclined import INCLINED
 from mpsdem.validation.reproduction.page import costs, table
-from mpsdem.validation.reproduction.runs import LEVELS, scenes
+from mpsdem.validation.reproduction.reasons import REASONS
+from mpsdem.validation.reproduction.runs import FINEST, LEVELS, scenes
 
 DOCUMENT = Path("docs", "reproduction.md")
+AS_IS, ALSO_FINEST = "--as-is", "--finest"
 
 _out = Console(soft_wrap=True, markup=False, highlight=False)
 
@@ -20,19 +23,29 @@ _out = Console(soft_wrap=True, markup=False, highlight=False)
 def main(arguments: list[str]) -> int:
     """Read the runs in a directory, make those that are missing, and write the tables."""
     options = {argument for argument in arguments if argument.startswith("--")}
-    if len(arguments) - len(options) != 1 or options - {"--as-is"}:
-        _out.print("usage: python -m mpsdem.validation.reproduction RUNS_DIRECTORY [--as-is]")
+    if len(arguments) - len(options) != 1 or options - {AS_IS, ALSO_FINEST}:
+        _out.print(
+            "usage: python -m mpsdem.validation.reproduction RUNS_DIRECTORY "
+            f"[{AS_IS}: make no runs] [{ALSO_FINEST}: make that of an hour too]"
+        )
         return 2
     directory = Path(next(argument for argument in arguments if argument not in options))
-    of = {
-        level: scenes(level, directory, Path("cases"), make="--as-is" not in options)
-        for level in LEVELS
+    of = {}
+    for level in LEVELS:
+        make = AS_IS not in options and (level != FINEST or ALSO_FINEST in options)
+        of[level] = scenes(level, directory, Path("cases"), make=make)
+    tables = {
+        "A": table(HORIZONTAL, of),
+        "B": table(INCLINED, of),
+        "why": table(REASONS, of),
+        "cost": costs(of),
     }
-    tables = {"A": table(HORIZONTAL, of), "B": table(INCLINED, of), "cost": costs(of)}
     for name, lines in tables.items():
         _out.print(f"{name}\n{lines}")
     if DOCUMENT.exists():
         DOCUMENT.write_text(filled(DOCUMENT.read_text("utf-8"), tables), "utf-8")
+        for name, figure in (("horizontal", of_horizontal(of)), ("inclined", of_inclined(of))):
+            figure.savefig(DOCUMENT.with_name(f"reproduction_{name}.png"), dpi=150)
     return 0
 
 

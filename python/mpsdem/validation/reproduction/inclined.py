@@ -102,14 +102,14 @@ def largest_rise(scene: Scene) -> Measured:
     return Measured(mean=rise / mean.max(), error=math.hypot(error[k], error[k + 1]) / mean.max())
 
 
-def rise_above_bottom(scene: Scene) -> Measured:
-    """The largest volume fraction of a layer over that of the lowest one [-]."""
+def lowest_below_largest(scene: Scene) -> Measured:
+    """How much less the lowest layer holds than the fullest one, over the latter [-]."""
     _, mean, error = in_layers(scene)
     k = int(np.argmax(mean))
     if k == 0:
-        return Measured(mean=1.0, error=0.0)
+        return Measured(mean=0.0, error=0.0)
     largest, lowest = (Measured(mean=float(mean[i]), error=float(error[i])) for i in (k, 0))
-    return largest / lowest
+    return (largest - lowest) / Measured(mean=largest.mean, error=0.0)
 
 
 def largest_fraction(scene: Scene) -> Measured:
@@ -383,10 +383,10 @@ INCLINED = (
     _said(
         "rises-first",
         "case 3: volume fraction first rises with height, then falls",
-        "largest fraction of a layer over that of the lowest",
-        rise_above_bottom,
+        "how much less the lowest layer holds than the fullest, over the latter",
+        lowest_below_largest,
         UPRIGHT,
-        at_least=_SIGNIFICANT,
+        at_least=1 - 1 / _SIGNIFICANT,
     ),
     *(
         _said(

@@ -11,17 +11,20 @@ from mpsdem.validation.reproduction.statement import Scenes, Statement
 
 
 def table(statements: Sequence[Statement], of: Mapping[str, Scenes]) -> str:
-    """One row a statement: what it says, what was measured at each fidelity, whether it holds.
+    """One row a statement: what it says, what was measured at each spacing, whether it holds.
 
     Parameters
     ----------
     statements : sequence of Statement
         The rows.
     of : mapping of str to scenes
-        By the name of the fidelity, in the order of the columns.
+        By the name of the fidelity, in the order of the columns; those without any run of these
+        statements are left out.
     """
+    needed = {name for statement in statements for name in statement.scenes}
+    of = {level: scenes for level, scenes in of.items() if needed & scenes.keys()}
     lines = [
-        f"| the paper | measured | holds if | {' | '.join(f'{level} | holds' for level in of)} |",
+        f"| said | measured | holds if | {' | '.join(f'{level} | holds' for level in of)} |",
         "|---" * (3 + 2 * len(of)) + "|",
     ]
     for statement in statements:
@@ -48,13 +51,13 @@ def number(measured: Measured) -> str:
 
 
 def costs(of: Mapping[str, Mapping[str, Scene]]) -> str:
-    """CPU seconds of every run, in Markdown."""
+    """CPU seconds of the first run of every scene, in Markdown."""
     lines = ["| run | fidelity | end | CPU s |", "|---|---|---|---|"]
     for level, scenes in of.items():
         for name, scene in scenes.items():
-            for start in scene.starts:
-                spent = start.summary.get("cpu_seconds", math.nan)
-                lines.append(f"| {name} | {level} | {start.time[-1]:g} s | {spent:.0f} |")
+            run = scene.starts[0]
+            spent = run.summary.get("cpu_seconds", math.nan)
+            lines.append(f"| {name} | {level} | {run.time[-1]:g} s | {spent:.0f} |")
     return "\n".join(lines) + "\n"
 
 

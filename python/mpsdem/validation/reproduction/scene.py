@@ -96,10 +96,9 @@ class Scene:
         self, number: Number, *, since: float | None = None, until: float = math.inf
     ) -> Measured:
         """Mean of a number over time [s], with its standard error by blocks."""
-        run = self.starts[0]
-        frames = np.flatnonzero(self._window(run.time, since, until))
-        values = np.array([number(self._frames[0][frame]) for frame in frames.tolist()])
-        return self.average(run.time[frames], values)
+        time = self.starts[0].time
+        values = np.array([number(at) for at in self.instants(since=since, until=until)])
+        return self.average(time[self._window(time, since, until)], values)
 
     def loss(self, *, since: float | None = None, until: float = math.inf) -> Measured:
         """Mean loss of pressure [Pa/m], with its standard error by blocks."""
@@ -131,6 +130,11 @@ class Scene:
         parts = {"peak": found.peak, "range": found.peak - found.trough}[part]
         error = parts.std(ddof=1) / math.sqrt(parts.size) if parts.size > 1 else math.nan
         return Measured(mean=float(parts.mean()), error=float(error))
+
+    def instants(self, *, since: float | None = None, until: float = math.inf) -> list[Instant]:
+        """The frames of the first run between two times [s]."""
+        frames = np.flatnonzero(self._window(self.starts[0].time, since, until))
+        return [self._frames[0][frame] for frame in frames.tolist()]
 
     @cached_property
     def solids(self) -> SolidsSurvey:
