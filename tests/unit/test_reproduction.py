@@ -5,17 +5,28 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_results import write_run
+from synthetic_results import cluster, write_run
 
 from mpsdem.results import Results, ResultsError
 from mpsdem.validation.reproduction.__main__ import filled
 from mpsdem.validation.reproduction.horizontal import (
     HORIZONTAL,
+    arch,
+    length,
     rear_middle_front,
     upper_less_lower,
     upper_less_lower_of_sections,
 )
-from mpsdem.validation.reproduction.inclined import INCLINED, gathering, lowest_below_largest
+from mpsdem.validation.reproduction.inclined import (
+    INCLINED,
+    at_wall,
+    fastest_away,
+    gathering,
+    lowest_below_largest,
+    reach,
+    rms_upwards,
+    sliding_back,
+)
 from mpsdem.validation.reproduction.measured import Measured
 from mpsdem.validation.reproduction.page import number
 from mpsdem.validation.reproduction.reasons import REASONS, VARIANTS
@@ -104,6 +115,7 @@ def made_up(tmp_path_factory):
     ("name", "value", "verdict"),
     [
         ("A/upper-5", 0.2, "yes"),
+        ("A/front-5", (4 * 0.76 + 2 * 0.74 - 4 * 0.4 - 2 * 0.42) / 6, "yes"),
         ("A/upper-late", math.nan, "no"),
         ("A/collapse", 1.0, "no"),
         ("A/comes-back", 3.0, "yes"),
@@ -116,6 +128,12 @@ def test_a_made_up_cluster_is_measured_as_it_was_made(made_up, name, value, verd
     measured = said.measure(made_up)
     assert measured.mean == pytest.approx(value, abs=1e-9, nan_ok=True)
     assert said.verdict(measured) == verdict
+
+
+def test_a_cluster_that_is_partly_through_the_outlet_is_not_torn_apart(made_up):
+    low, high = np.quantile(cluster(4.0)[0][:, 0], [0.05, 0.95])
+    assert low < 4 < high
+    assert made_up["horizontal_pipe"].at(4.0, length).mean == pytest.approx(high - low)
 
 
 def test_starts_that_agree_leave_no_error_and_a_single_one_tells_none(made_up):
@@ -135,6 +153,28 @@ def test_a_fast_low_front_does_not_hide_that_the_top_of_each_section_is_faster()
     )
     assert upper_less_lower(at) < 0
     assert upper_less_lower_of_sections(at) == pytest.approx(0.03 * 16 / 24)
+
+
+def test_an_outline_with_a_hump_arches_and_one_with_a_trough_does_not():
+    along, hump = np.arange(100.0), np.full(100, 0.02)
+    hump[45:55] = 0.05
+    assert arch(instant(along=along, height=hump)) == pytest.approx(0.03)
+    hump[95:] = 0.06
+    assert arch(instant(along=along, height=hump)) == pytest.approx(-0.01)
+
+
+def test_where_solids_of_an_inclined_pipe_are_and_which_way_they_go():
+    velocity = np.zeros((100, 3))
+    velocity[:, 0] = -0.2
+    velocity[:10] = 0.5, 0.0, 0.3
+    away = np.full(100, 0.09)  # they touch the wall
+    away[:10] = 0.02
+    at = instant(away=away, height=0.1 - away, velocity=velocity)
+    assert sliding_back(at) == 0.9
+    assert at_wall(at) == 0.9
+    assert fastest_away(at) == pytest.approx(0.2)
+    assert reach(at) == pytest.approx(0.09)
+    assert rms_upwards(at) == pytest.approx(0.3 * 0.1**0.5)
 
 
 def test_solids_gather_as_many_times_as_the_section_is_fuller():

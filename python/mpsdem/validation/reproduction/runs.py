@@ -30,7 +30,6 @@ SETTLED = 3.0  # [s] from which on the solids of case B have come to rest on the
 
 _GAPS = (0.005, 0.006, 0.007)  # of the block [diameters]: starts that differ by a thousandth
 _INSTANTS_END = 5.0  # [s] of the further starts: the last instant that the paper speaks of singly
-_INCLINED_END = {"balanced": 6.0}  # [s] three periods after they have settled
 _MAY_DIFFER = ("title", "end_time", "output", "fidelity.threads")
 
 
@@ -52,9 +51,7 @@ def cases(level: str, folder: Path) -> dict[str, Case]:
     found = {SCENE: shipped[SCENE]}
     if level != FINEST:
         found |= dict(_starts(shipped[SCENE]))
-        for name in (STILL, SIDEWAYS, UPRIGHT):
-            end = _INCLINED_END.get(level, shipped[name].end_time)
-            found[name] = _until(shipped[name], end)
+        found |= {name: shipped[name] for name in (STILL, SIDEWAYS, UPRIGHT)}
     if level == reasons.LEVEL:
         for name, (of, changes) in reasons.VARIANTS.items():
             found[name] = _until(shipped[of], changes["end_time"]).with_(**changes)
