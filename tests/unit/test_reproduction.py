@@ -9,6 +9,7 @@ from synthetic_results import cluster, write_run
 
 from mpsdem.results import Results, ResultsError
 from mpsdem.validation.reproduction.__main__ import filled
+from mpsdem.validation.reproduction.figures import of_horizontal
 from mpsdem.validation.reproduction.horizontal import (
     HORIZONTAL,
     arch,
@@ -185,6 +186,12 @@ def test_solids_gather_as_many_times_as_the_section_is_fuller():
 
 def test_a_cluster_off_the_bottom_leaves_the_lowest_layer_empty(made_up):
     assert lowest_below_largest(made_up["horizontal_pipe"]).mean == 1
+
+
+def test_the_curves_show_every_spacing_that_was_run(made_up):
+    parts, loss = of_horizontal({"quick": made_up, "balanced": made_up, "finest": {}}).axes
+    assert len(parts.get_lines()) == 2 * 4
+    assert len(loss.get_lines()) == 2
 
 
 def test_every_variant_differs_from_its_case_in_what_its_name_says():
