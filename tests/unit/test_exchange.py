@@ -295,6 +295,20 @@ def test_liquid_deep_in_a_bed_creeps_beside_the_wall_as_it_does_within():
     assert driven[deep & beside].mean() == pytest.approx(driven[deep & ~beside].mean(), rel=5e-3)
 
 
+def test_viscous_liquid_over_a_bed_parts_its_steps_until_they_are_stable():
+    """Where little liquid lies beside much the viscous terms are stiffest."""
+    viscous = {"kinematic_viscosity": 0.02, "turbulent": False}
+    liquid, exchange = Nodes(bulk_velocity=0.1, **viscous), new_exchange()
+    solids = crowd(900, velocity=(0.0, 0.0, 0.0), spread=0.0, below=-0.01, drag=1e-3)
+    solids.radius[:] = 0.0115
+    for _ in range(40):
+        report = go(exchange, liquid, solids, 1e-2)
+    assert report.limit == "viscosity"
+    assert liquid.void_fraction.min() == pytest.approx(0.3)  # the least there is
+    assert np.abs(liquid.velocity[:, 0]).max() < 0.5  # a parabola's is 0.2 in twice the room
+    assert np.abs(liquid.velocity[:, 1:]).max() < 0.1
+
+
 @EVERY_LIQUID
 def test_solids_that_sink_press_the_liquid_up_beside_them(water):
     """Volume is kept: what goes down in a section must come up in it."""

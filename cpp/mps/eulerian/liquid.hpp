@@ -155,7 +155,6 @@ private:
 
     void transport();
     [[nodiscard]] Real allowed(bool with_solids, AdvanceReport& report);
-    [[nodiscard]] Real largest_viscosity_with_solids();
     void predict(const Stage& stage);
     void project(const Stage& stage, AdvanceReport& report);
     [[nodiscard]] Real correct(Real kick);
