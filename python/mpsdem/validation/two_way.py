@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from mpsdem._core import coupling
+from mpsdem.analysis import correlations
 from mpsdem.case import Case
 from mpsdem.plan import terminal_velocity
 from mpsdem.validation.drag import DI_FELICE, ERGUN, SCHILLER_NAUMANN
@@ -539,7 +540,13 @@ def _hindered_slip(flow: Flow) -> float:
     """Slip of the suspension of 5 mm in the mean over the bore, over what is expected of it [-]."""
     concentration = flow.weight / ((GLASS - WATER) * GRAVITY)
     slip = (1.0 - flow.velocity) / (1 - concentration)  # at a bulk velocity of 1 m/s
-    lone = 0.4729  # m/s, by the drag law
+    lone = correlations.terminal_velocity(
+        diameter=5e-3,
+        density=GLASS,
+        liquid_density=WATER,
+        kinematic_viscosity=VISCOSITY,
+        gravity=GRAVITY,
+    )
     return slip / (lone * math.pow(1 - concentration, 1.38) * math.pow(10, -5 / 100))
 
 
