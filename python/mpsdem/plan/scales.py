@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from mpsdem._core import coupling, dem, mps
+from mpsdem.analysis.correlations import LAMINAR_LIMIT
 from mpsdem.case import Case, CaseError, List, Material, Problem, Solids
 from mpsdem.contacts import Impact, Stiffness
 
@@ -44,7 +45,6 @@ _LIGHT = 2.0
 # Stokes number of an impact below which the liquid takes a third and more of the rebound [-]: it
 # leaves exp(-35 / St) of the restitution. Legendre et al. (2005), doi:10.1063/1.2010527.
 _VISCOUS = 100.0
-_LAMINAR = 2300  # [-] Reynolds number of a pipe below which its flow is laminar
 LEAST_GAP = 3e-3  # [-] over the reduced radius, that lubrication takes rough surfaces to leave
 
 
@@ -433,7 +433,7 @@ def _driven_flow(case: Case) -> float:
         return 0.0
     force = abs(liquid.pressure_gradient) / liquid.density  # [m/s2]
     laminar = force * bore**2 / (32 * liquid.kinematic_viscosity)
-    if laminar <= (fastest := _LAMINAR * liquid.kinematic_viscosity / bore):
+    if laminar <= (fastest := LAMINAR_LIMIT * liquid.kinematic_viscosity / bore):
         return laminar
     scale = math.sqrt(2 * bore * force)
     smooth = 2.51 * liquid.kinematic_viscosity / (bore * scale)

@@ -244,12 +244,7 @@ class Simulation:
 
     def _write_checkpoint(self, state: State, stopwatch: Stopwatch) -> None:
         check(state, self.case.pipe.radius)
-        parts = {
-            "population",
-            "liquid",
-            "exchange",
-            "axis",
-        }  # which keep their own state, or need none
+        parts = {"population", "liquid", "exchange", "axis"}  # keep their own state, or need none
         kept = {f.name for f in fields(State)} - parts - {"step", "time"}
         write_checkpoint(
             self.directory / "checkpoint.h5",
