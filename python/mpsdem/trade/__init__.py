@@ -6,7 +6,20 @@ the two reference cases; by it `choose` finds the fidelity for a budget, or for 
 
 from __future__ import annotations
 
+from mpsdem.trade.choice import Candidate, choose, expectation, seconds_of, share_of
 from mpsdem.trade.outcome import Outcome, Row, front
+from mpsdem.trade.report import report_rows
 from mpsdem.trade.trading import trade
 
-__all__ = ["Outcome", "Row", "front", "trade"]
+__all__ = [
+    "Candidate",
+    "Outcome",
+    "Row",
+    "choose",
+    "expectation",
+    "front",
+    "report_rows",
+    "seconds_of",
+    "share_of",
+    "trade",
+]

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from pydantic_core import PydanticCustomError
+
 from mpsdem.case import Case, CaseError, Problem
+from mpsdem.case.units import Quantity
 from mpsdem.plan import COMPUTED, Plan, make_plan, pipe_profile
 from mpsdem.trade.machine import REFERENCE, Machine
 from mpsdem.trade.outcome import Outcome, Row
@@ -103,6 +107,54 @@ def choose(
     return _within_error(known, error)
 
 
+def expectation(chosen: Candidate) -> Iterator[str]:
+    """What a run of a candidate is expected to cost and to be worth, in lines."""
+    yield (
+        f"{chosen.setting}: about {chosen.seconds:.2g} s by the clock, {chosen.cpu_seconds:.2g} s "
+        "of computing"
+    )
+    if chosen.errors:
+        each = ", ".join(f"{name} {100 * e:.2g} %" for name, e in chosen.errors.items())
+        yield f"errors as measured in '{chosen.scene}': {each}"
+    else:
+        yield "errors: no scene of the table is like this case; `mpsdem trade` measures them"
+    if left := [stage.name for stage in chosen.plan.left_out]:
+        yield f"left out: {', '.join(left)}"
+
+
+def seconds_of(text: str, field: str) -> float:
+    """Read a time such as ``20 min`` or ``90`` [s].
+
+    Raises
+    ------
+    CaseError
+        If it is none; `field` names it.
+    """
+    return _read(text, field, Quantity("s", above=0.0), "must be a time > 0 s, such as '10 min'")
+
+
+def share_of(text: str, field: str) -> float:
+    """Read a share such as ``5%``, ``5 percent`` or ``0.05`` [-].
+
+    Raises
+    ------
+    CaseError
+        If it is none; `field` names it.
+    """
+    rule = "must be a share > 0 and < 1, such as 5%"
+    return _read(text.replace("%", " percent"), field, Quantity(above=0.0, below=1.0), rule)
+
+
+def _read(text: str, field: str, quantity: Quantity, rule: str) -> float:
+    value: str | float = text.strip()
+    with suppress(ValueError):
+        value = float(text)
+    try:
+        return quantity.read(value)
+    except PydanticCustomError:
+        raise CaseError([Problem(field=field, value=text, rule=rule)]) from None
+
+
 def _within_time(known: Sequence[Candidate], seconds: float) -> Candidate:
     fitting = [candidate for candidate in known if candidate.seconds <= seconds]
     if not fitting:
@@ -158,17 +210,17 @@ def candidates(
     if plan.liquid_model not in COMPUTED:
         errors = _of_profile(scene) if case.solids is None else {}
         for level in LEVELS if case.solids is not None else LEVELS[:1]:
-            changed = {"level": level, "rayleigh_fraction": None, "solid_step": None}
-            candidate = _candidate(case, f"level {level}", {"fidelity": changed}, machine)
+            changes = {"level": level, "rayleigh_fraction": None, "solid_step": None}
+            candidate = _candidate(case, f"level {level}", {"fidelity": changes}, machine)
             yield replace(candidate, errors=errors, scene=scene.title if scene and errors else "")
         return
     if case.liquid is not None and case.liquid.model == "auto" and _may_be_prescribed(case):
-        changes = {"liquid": {"model": "profile"}, "fidelity": {"level": "quick"}}
-        candidate = _candidate(case, "liquid model profile, level quick", changes, machine)
+        prescribed = {"liquid": {"model": "profile"}, "fidelity": {"level": "quick"}}
+        candidate = _candidate(case, "liquid model profile, level quick", prescribed, machine)
         yield _promising(candidate, _of_profile(scene), scene)
     known = errors_by_spacing(scene) if scene else {}
     for across, level in _ACROSS.items():
-        changed = {"level": level, "rayleigh_fraction": None, "solid_step": None}
+        changed: dict[str, Any] = {"level": level, "rayleigh_fraction": None, "solid_step": None}
         changed["particle_spacing"] = (
             None if across in _OF_LEVEL else 2 * case.pipe.radius / across
         )  # fmt: skip
@@ -197,9 +249,7 @@ def _promising(
     return replace(candidate, errors=errors, scene=title)
 
 
-def _candidate(
-    case: Case, setting: str, changes: Mapping[str, Any], machine: Machine
-) -> Candidate:
+def _candidate(case: Case, setting: str, changes: Mapping[str, Any], machine: Machine) -> Candidate:
     changed = case.with_(**changes)
     plan = make_plan(changed)
     estimate = plan.estimate

@@ -25,6 +25,7 @@ _MARKS = {
     "smoothing radius": ("#4aa5a0", "h"),
 }
 _LEAST = 1e-3  # error that the axis ends at: nobody needs to see less
+_CLOSE = 0.08  # decades from the case as given within which values would hide each other
 _SHORT = {"pressure_gradient": "loss of pressure"}  # names in words, where not the name's own
 
 
@@ -93,15 +94,25 @@ def _draw(axes: Axes, outcome: Outcome, name: str) -> None:
             color=colour, linewidth=0.9, alpha=0.8, zorder=1,
         )  # fmt: skip
         for row in line:
-            _mark(axes, row, name, colour, mark, knob)
+            apart = None if given is None else _apart(row, given, name)
+            _mark(axes, row, name, colour, mark, knob, apart=apart)
     if given is not None:
         _mark(axes, given, name, INK, "*", AS_GIVEN, size=11)
     axes.set_ylim(bottom=_LEAST * 0.8)
 
 
 def _mark(
-    axes: Axes, row: Row, name: str, colour: str, mark: str, label: str, size: float = 5.0
+    axes: Axes,
+    row: Row,
+    name: str,
+    colour: str,
+    mark: str,
+    label: str,
+    *,
+    size: float = 5.0,
+    apart: float | None = None,
 ) -> None:
+    """Draw a row's mark; name its value where it stands `apart` from the case as given."""
     error = _of(row, name)
     assert error is not None
     height = _height(row, name)
@@ -112,11 +123,17 @@ def _mark(
         markersize=size, markerfacecolor=colour if error.resolved else "white", capsize=2,
         elinewidth=0.7, linestyle="none", label=label, zorder=3,
     )  # fmt: skip
-    if label != AS_GIVEN:
+    if label != AS_GIVEN and (apart is None or apart > _CLOSE):
         axes.annotate(
             row.value, (row.rate, height), xytext=(4, 3), textcoords="offset points", fontsize=6,
             color=colour,
         )  # fmt: skip
+
+
+def _apart(row: Row, given: Row, name: str) -> float:
+    """How far two marks lie apart, in decades of the one axis and half decades of the other."""
+    across = math.log10(row.rate / given.rate)
+    return math.hypot(across, 0.5 * math.log10(_height(row, name) / _height(given, name)))
 
 
 def _by_knob(rows: list[Row]) -> Iterator[tuple[str, list[Row]]]:

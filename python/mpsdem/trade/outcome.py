@@ -163,8 +163,12 @@ def _recommend(outcome: Outcome) -> Iterator[str]:
     if not known:
         yield "No run reached its end: nothing can be said."
         return
-    good = [row for row in known if row.worst is not None and row.worst.size <= _TOLERABLE]
-    chosen = good[0] if good else known[-1]
+    judged = [row for row in known if not _is_its_own_measure(row, outcome)]
+    if not judged:
+        yield "No run but that of the reference reached its end: nothing can be said."
+        return
+    good = [row for row in judged if row.worst is not None and row.worst.size <= _TOLERABLE]
+    chosen = good[0] if good else judged[-1]
     assert chosen.worst is not None
     cheaper = ""
     if reference is not None and reference is not chosen:
@@ -180,10 +184,18 @@ def _recommend(outcome: Outcome) -> Iterator[str]:
         return
     if given is not chosen and given.worst is not None:
         yield f"The case as given is off by {_percent(given.worst)}."
-    yield from _of_knobs([row for row in outcome.rows if row.knob not in (AS_GIVEN, "level")], given)
+    yield from _of_knobs(
+        [row for row in outcome.rows if row.knob not in (AS_GIVEN, "level")], given
+    )
     for row in outcome.rows:
         if row.status == "diverged":
             yield f"{_told(row).capitalize()} diverges: {row.reason}"
+
+
+def _is_its_own_measure(row: Row, outcome: Outcome) -> bool:
+    """Whether the errors of a row are zero because they count from it."""
+    exact = any(compared.exact for compared in outcome.quantities.values())
+    return str(row) == outcome.reference and not exact
 
 
 def _of_knobs(rows: Sequence[Row], given: Row) -> Iterator[str]:
@@ -233,7 +245,12 @@ def as_json(outcome: Outcome) -> dict[str, Any]:
         "wanted": outcome.wanted,
         "reference": outcome.reference,
         "quantities": {
-            name: {"unit": q.unit, "reference": q.reference, "bar": q.bar, "exact": q.exact}
+            name: {
+                "unit": q.unit,
+                "reference": _digits(q.reference),
+                "bar": _digits(q.bar),
+                "exact": q.exact,
+            }
             for name, q in outcome.quantities.items()
         },
         "rows": [
@@ -266,13 +283,24 @@ def from_json(table: Mapping[str, Any]) -> Outcome:
         wanted=table["wanted"],
         reference=table["reference"],
         quantities={
-            name: Compared(**{k: math.nan if v is None else v for k, v in q.items()})
+            name: Compared(
+                unit=q["unit"],
+                reference=_number(q["reference"]),
+                bar=_number(q["bar"]),
+                exact=q["exact"],
+            )
             for name, q in table["quantities"].items()
         },
         rows=tuple(
             Row(
-                **{k: row[k] for k in ("knob", "value", "number", "status", "reason")},
-                **{k: _number(row[k]) for k in ("rate", "of_solids", "planned")},
+                knob=row["knob"],
+                value=row["value"],
+                number=row["number"],
+                status=row["status"],
+                reason=row["reason"],
+                rate=_number(row["rate"]),
+                of_solids=_number(row["of_solids"]),
+                planned=_number(row["planned"]),
                 errors=_deviations(row["errors"]),
                 changes=_deviations(row["changes"]),
             )

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from mpsdem.results.files import write_atomically
 from mpsdem.trade.figure import draw_trade
-from mpsdem.trade.outcome import Outcome, Row, as_json
+from mpsdem.trade.outcome import Outcome, as_json
 from mpsdem.trade.quantities import Deviation
 
 
@@ -76,12 +76,9 @@ def _lines(outcome: Outcome) -> Iterator[str]:
     yield f"| setting | s of computing a second | {' | '.join(names)} |"
     yield "|---|---|" + "---|" * len(names)
     chosen = outcome.front
-    for row in outcome.rows:
+    for row, (setting, *cells) in zip(outcome.rows, report_rows(outcome), strict=True):
         mark = "**" if row in chosen else ""
-        cells = [percent(row.errors.get(name)) for name in names]
-        if not row.errors:
-            cells = [row.status, *[""] * (len(names) - 1)]
-        yield f"| {mark}{row}{mark} | {row.rate:.3g} | {' | '.join(cells)} |"
+        yield f"| {mark}{setting}{mark} | {' | '.join(cells)} |"
     yield ""
     for sentence in outcome.recommendation():
         yield f"- {sentence}"
@@ -109,10 +106,11 @@ def _rounded(percent: float) -> str:
     return f"{percent:+.{digits}f}"
 
 
-def table_of_errors(rows: list[Row], names: list[str]) -> Iterator[list[str]]:
-    """Cells of a terminal's table: setting, cost, and the error of each quantity."""
-    for row in rows:
+def report_rows(outcome: Outcome) -> Iterator[list[str]]:
+    """Cells of a table: setting, cost, and the error of each quantity."""
+    names = list(outcome.quantities)
+    for row in outcome.rows:
         cells = [percent(row.errors.get(name)) for name in names]
-        if not row.errors:
-            cells = [row.status, *[""] * (len(names) - 1)]
+        if not row.errors and cells:
+            cells[0] = row.status
         yield [str(row), f"{row.rate:.3g}", *cells]

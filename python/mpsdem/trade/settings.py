@@ -123,7 +123,12 @@ def _turns(plan: Plan) -> Iterator[tuple[str, str, float, dict[str, Any]]]:
             spacing = bore / across
             if abs(spacing / given - 1) > 0.05:
                 value = f"D/{across}"
-                yield "particle spacing", value, spacing, {"fidelity": {"particle_spacing": spacing}}
+                yield (
+                    "particle spacing",
+                    value,
+                    spacing,
+                    {"fidelity": {"particle_spacing": spacing}},
+                )
         for factor in (0.5, 1.5):
             courant = round(fidelity.courant * factor, 6)
             if courant <= 2:
@@ -141,7 +146,7 @@ def _turns(plan: Plan) -> Iterator[tuple[str, str, float, dict[str, Any]]]:
 def _turns_of_solids(plan: Plan) -> Iterator[tuple[str, str, float, dict[str, Any]]]:
     case, fidelity = plan.case, plan.case.fidelity
     assert case.solids is not None
-    if not case.solids.held:
+    if not case.solids.held and case.solids_count > 1:
         for factor in (0.1, 0.01):
             softer = fidelity.stiffness_factor * factor
             changes = {"fidelity": {"stiffness_factor": softer}}

@@ -128,7 +128,9 @@ def _new_schedule(
     tell: Tell,
 ) -> Schedule:
     """Choose the end time by what pilots take, one for each kind of run."""
-    plans = {setting.name: make_plan(shortened(setting.case, case.end_time)) for setting in settings}
+    plans = {
+        setting.name: make_plan(shortened(setting.case, case.end_time)) for setting in settings
+    }
     budget = seconds * crew.count
     off: dict[tuple[Any, ...], float] = {}
     for kind in dict.fromkeys(_kind(plan) for plan in plans.values()):
@@ -227,8 +229,9 @@ def _compare(
     whole = [setting for setting in done if runs[setting.name].whole]
     series = {s.name: quantities_of(directory / homes[s.name], list(names)) for s in whole}
     reference = finest(whole) if whole else None
-    known = dict(_known(case)) | exact
-    compared, against = {}, {}
+    known = dict(_known(case)) | dict(exact)
+    compared: dict[str, Compared] = {}
+    against: dict[str, Series | float] = {}
     for name in names:
         of_reference = series[reference.name].get(name) if reference else None
         if name in known:
@@ -241,7 +244,10 @@ def _compare(
             )  # fmt: skip
             against[name] = of_reference
         else:
-            left_out = [*left_out, LeftOut(setting=name, reason=_no_such(directory, homes, done, name))]
+            left_out = [
+                *left_out,
+                LeftOut(setting=name, reason=_no_such(directory, homes, done, name)),
+            ]
     given = next((s for s in whole if s.knob == AS_GIVEN), None)
     base = series[given.name] if given else {}
     rows = tuple(
@@ -312,9 +318,7 @@ def _unit(name: str) -> str:
     return "m" if name in ("bed_height", "solids_front_position") else "1"
 
 
-def _no_such(
-    directory: Path, homes: Mapping[str, str], done: Sequence[Setting], name: str
-) -> str:
+def _no_such(directory: Path, homes: Mapping[str, str], done: Sequence[Setting], name: str) -> str:
     if not done:
         return "no run reached its end"
     summary = summary_of(directory / homes[done[0].name])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from typing import Any, Protocol
 
 from mpsdem.results import MissingExtraError
@@ -56,9 +57,7 @@ class SideBySide:
         self._client, self.said = client, said
         self.count = max(1, sum(client.nthreads().values()))
         self._under_way: dict[str, str] = {}
-        from distributed import as_completed
-
-        self._ended = as_completed()
+        self._ended = _distributed().as_completed()
 
     @property
     def busy(self) -> int:
@@ -93,7 +92,7 @@ def workers(scheduler: str | None = None, *, cores: int | None = None) -> Iterat
     """
     cores = cores or len(os.sched_getaffinity(0))
     try:
-        import distributed
+        distributed = _distributed()
     except ImportError:
         if scheduler is not None:
             raise MissingExtraError("--scheduler", "distributed") from None
@@ -114,3 +113,8 @@ def workers(scheduler: str | None = None, *, cores: int | None = None) -> Iterat
             distributed.Client(cluster) as client,
         ):
             yield SideBySide(client, f"side by side on {cores} cores")
+
+
+def _distributed() -> Any:
+    """Dask's package, which is optional, and has no types."""
+    return import_module("distributed")
