@@ -281,9 +281,10 @@ def scene_of(case: Case) -> str | None:
 def errors_by_spacing(scene: Outcome) -> dict[int, dict[str, float]]:
     """Errors of each quantity by the spacings across the bore that were measured [-].
 
-    None is smaller than that of a finer spacing. Where errors count from the finest setting, whose
-    own is not known, that of the next one stands for it: an upper bound where the error falls
-    faster than the spacing's first power.
+    Where the answer is known they are as measured. Where they count from the finest setting, whose
+    own is not known, none is smaller than that of a finer spacing, nor than what a third of the
+    spacing less changes, from 16 to 24 across: as much as the finest's own where errors fall with
+    the power 1.7 of the spacing.
     """
     rows: dict[int, Row] = {}
     for across in _ACROSS:
@@ -291,16 +292,20 @@ def errors_by_spacing(scene: Outcome) -> dict[int, dict[str, float]]:
         name = f"level {level}" if level else f"particle spacing D/{across}"
         if (row := next((row for row in scene.rows if str(row) == name), None)) is not None:
             rows[across] = row
-    found: dict[int, dict[str, float]] = {}
-    least: dict[str, float] = {}
     finest = max(rows, default=0)
+    coarser = max((across for across in rows if across <= finest / 1.5), default=finest)
+    least: dict[str, float] = {}
+    for name, compared in scene.quantities.items():
+        error = rows[coarser].errors.get(name) if rows else None
+        if error is not None and not compared.exact and math.isfinite(error.value):
+            least[name] = error.size
+    found: dict[int, dict[str, float]] = {}
     for across in sorted(rows, reverse=True):
         for name, error in rows[across].errors.items():
-            if math.isfinite(error.value) and not (across == finest and error.size == 0):
-                least[name] = max(least.get(name, 0.0), error.size)
+            if math.isfinite(error.value):
+                floor = 0.0 if scene.quantities[name].exact else least.get(name, 0.0)
+                least[name] = max(floor, error.size)
         found[across] = dict(least)
-    if finest and not found[finest] and len(found) > 1:
-        found[finest] = dict(found[sorted(found)[-2]])
     return dict(sorted(found.items()))
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from mpsdem.plot.style import DOTS_PER_INCH, FAINT, INK, style
 from mpsdem.trade.outcome import Outcome, Row, front
@@ -80,6 +80,9 @@ def _draw(axes: Axes, outcome: Outcome, name: str) -> None:
     axes.set_ylabel("error " + ("from the exact value" if exact else f"from {outcome.reference}"))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{100 * y:g} %"))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=20))
+        axis.set_minor_formatter(NullFormatter())
     best = front([_only(row, name) for row in rows])
     if best:
         x = [row.rate for row in best]

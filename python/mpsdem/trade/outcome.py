@@ -12,6 +12,7 @@ from mpsdem.trade.settings import AS_GIVEN, LeftOut
 
 _TOLERABLE = 0.05  # [-] error that the recommendation is content with
 _CHEAPER = 0.9  # [-] of the cost, below which a saving is worth a word
+_NOTHING = 1e-4  # [-] error below which nobody needs to know more
 _UNMOVED = 0.01  # [-] change that does not matter, though it be resolved
 
 
@@ -215,9 +216,9 @@ def _of_knobs(rows: Sequence[Row], given: Row) -> Iterator[str]:
         elif ratio > 1 / _CHEAPER:
             idle.append(f"{_told(row)} ({_times(ratio)} the cost)")
     if free:
-        yield f"Saves time and moves nothing beyond chance: {'; '.join(free)}."
+        yield f"Saves time and moves nothing beyond chance or 1 %: {'; '.join(free)}."
     if idle:
-        yield f"Costs time and moves nothing beyond chance: {'; '.join(idle)}."
+        yield f"Costs time and moves nothing beyond chance or 1 %: {'; '.join(idle)}."
     if paid:
         yield f"Moves the results: {'; '.join(paid)}."
 
@@ -231,9 +232,11 @@ def _times(ratio: float) -> str:
 
 
 def _percent(deviation: Deviation) -> str:
+    if deviation.size < _NOTHING:
+        return f"less than {_NOTHING:.2%}"
     if not math.isfinite(deviation.bar):
         return f"{100 * abs(deviation.value):.2g} %"
-    return f"{100 * abs(deviation.value):.2g} ± {100 * deviation.bar:.1g} %"
+    return f"{100 * abs(deviation.value):.2g} ± {100 * max(deviation.bar, _NOTHING):.1g} %"
 
 
 def as_json(outcome: Outcome) -> dict[str, Any]:

@@ -63,8 +63,8 @@ def make_schedule(
     Returns
     -------
     Schedule
-        The case as given and the quick level are always kept; a level is left out only where all
-        else has been.
+        The case as given and the quick level are always kept; a level is left out where it takes
+        too long by itself, else only when all knobs have been.
     """
     kept, left_out = list(settings), []
 
@@ -75,7 +75,11 @@ def make_schedule(
 
     while end_time() < min(shortest, longest):
         spare = [s for s in kept if s.knob not in (AS_GIVEN, "level")]
-        spare = spare or [s for s in kept if s.knob == "level" and s.value != LEVELS[0]]
+        levels = [s for s in kept if s.knob == "level" and s.value != LEVELS[0]]
+        alone = max(kept, key=lambda setting: rates[setting.name])
+        if alone in levels and rates[alone.name] > sum(rates[s.name] for s in kept) / workers:
+            spare = [alone]  # a run that takes all the time by itself: no other gives it more
+        spare = spare or levels
         if not spare:
             break
         dearest = max(spare, key=lambda setting: rates[setting.name])
@@ -83,7 +87,7 @@ def make_schedule(
         cost = rates[dearest.name] * min(shortest, longest)
         reason = f"no time: {cost:.0f} s of computing for the {min(shortest, longest):.3g} s needed"
         left_out.append(LeftOut(setting=str(dearest), reason=reason))
-    until = min(longest, end_time())
+    until = min(longest, float(f"{end_time():.3g}"))
     reference = finest(kept)
     kept.sort(key=lambda setting: (_importance(setting, reference), -rates[setting.name]))
     total = until * sum(rates[setting.name] for setting in kept)
@@ -113,10 +117,6 @@ def least_time(case: Case) -> float:
 
 def shortened(case: Case, end_time: float) -> Case:
     """The case up to an end time [s], with frames enough for averages and no figures."""
-    every = min(case.output.every, end_time / _FRAMES)
-    every = float(f"{every:.3g}")
-    frames = max(1, math.floor(end_time / every * (1 + 1e-9)))
-    output = {"every": every, "times": None, "figures": False, "liquid_stride": 0}
-    return case.with_(
-        end_time=float(f"{every * frames:.6g}"), fidelity={"threads": 1}, output=output
-    )  # fmt: skip
+    frames = max(_FRAMES, math.ceil(end_time / case.output.every * (1 - 1e-9)))
+    output = {"every": end_time / frames, "times": None, "figures": False, "liquid_stride": 0}
+    return case.with_(end_time=end_time, fidelity={"threads": 1}, output=output)
