@@ -18,6 +18,7 @@ from mpsdem.trade.document import document
 from mpsdem.trade.machine import REFERENCE, Machine
 from mpsdem.trade.outcome import Compared, Outcome, Row, as_json, from_json
 from mpsdem.trade.quantities import Deviation, Series, applicable, deviation
+from mpsdem.trade.report import percent
 from mpsdem.trade.runs import Outcome as Run
 from mpsdem.trade.scenes import SCENES
 from mpsdem.trade.schedule import finest, make_schedule
@@ -169,6 +170,14 @@ def test_what_lies_within_two_error_bars_is_not_resolved():
     assert not Deviation(value=0.01, bar=0.006).resolved
     assert Deviation(value=-0.02, bar=0.006).resolved
     assert Deviation(value=0.001, bar=0.006).size == 0.006
+
+
+def test_a_run_that_still_drifts_says_that_its_error_bar_is_too_small():
+    rising = series(np.linspace(90, 110, 60) + np.random.default_rng(2).standard_normal(60))
+    assert not deviation(rising, 100.0).sure
+    assert "?" in percent(deviation(rising, 100.0))
+    level = series(100 + np.random.default_rng(2).standard_normal(400))
+    assert deviation(level, 100.0).sure
 
 
 def test_a_relative_error_of_nothing_is_unknown():

@@ -267,8 +267,8 @@ def as_json(outcome: Outcome) -> dict[str, Any]:
                 "of_solids": _digits(row.of_solids),
                 "planned": _digits(row.planned),
                 "on_front": str(row) in chosen,
-                "errors": _pairs(row.errors),
-                "changes": _pairs(row.changes),
+                "errors": _triples(row.errors),
+                "changes": _triples(row.changes),
             }
             for row in outcome.rows
         ],
@@ -314,14 +314,14 @@ def from_json(table: Mapping[str, Any]) -> Outcome:
     )
 
 
-def _pairs(deviations: Mapping[str, Deviation]) -> dict[str, list[float | None]]:
-    return {name: [_digits(d.value), _digits(d.bar)] for name, d in deviations.items()}
+def _triples(deviations: Mapping[str, Deviation]) -> dict[str, list[float | bool | None]]:
+    return {name: [_digits(d.value), _digits(d.bar), d.sure] for name, d in deviations.items()}
 
 
-def _deviations(pairs: Mapping[str, Sequence[float | None]]) -> dict[str, Deviation]:
+def _deviations(triples: Mapping[str, Sequence[Any]]) -> dict[str, Deviation]:
     return {
-        name: Deviation(value=_number(value), bar=_number(bar))
-        for name, (value, bar) in pairs.items()
+        name: Deviation(value=_number(value), bar=_number(bar), sure=sure)
+        for name, (value, bar, sure) in triples.items()
     }
 
 

@@ -45,10 +45,13 @@ class Deviation:
         Relative, signed [-]; NaN where there is none.
     bar : float
         Its standard error [-]; NaN where the run has too few values to tell.
+    sure : bool
+        Whether the run was long enough to trust the bar, which is else too small.
     """
 
     value: float
     bar: float
+    sure: bool = True
 
     @property
     def size(self) -> float:
@@ -111,7 +114,7 @@ def series_of(results: Results, name: str) -> Series | None:
 def mean_of(series: Series) -> Deviation:
     """Mean of the second half, with its standard error, both in the unit of the series."""
     average = time_average(series.time, series.values)
-    return Deviation(value=average.mean, bar=average.error)
+    return Deviation(value=average.mean, bar=average.error, sure=average.long_enough)
 
 
 def deviation(series: Series, reference: Series | float) -> Deviation:
@@ -142,7 +145,8 @@ def deviation(series: Series, reference: Series | float) -> Deviation:
         else:
             one, other = mean_of(series), mean_of(reference)
             bar = math.hypot(one.bar, other.bar)
-            apart = Deviation(value=one.value - other.value, bar=bar)
+            sure = one.sure and other.sure
+            apart = Deviation(value=one.value - other.value, bar=bar, sure=sure)
     if known == 0 or not math.isfinite(known):
         return NONE
-    return Deviation(value=apart.value / abs(known), bar=apart.bar / abs(known))
+    return Deviation(value=apart.value / abs(known), bar=apart.bar / abs(known), sure=apart.sure)

@@ -71,7 +71,9 @@ def _lines(outcome: Outcome) -> Iterator[str]:
         of.append(f"{', '.join(measured)}: from {outcome.reference}")
     part = "" if outcome.end_time >= outcome.wanted else f" of the {outcome.wanted:g} s wanted"
     yield f"Runs of {outcome.end_time:.3g} s{part}, means over the second half. Errors in percent"
-    yield f"({'; '.join(of)}), ± one standard error; the front in bold.\n"
+    doubt = any(not error.sure for row in outcome.rows for error in row.errors.values())
+    too_short = ", too small at a ?, as the run is too short" if doubt else ""
+    yield f"({'; '.join(of)}), ± one standard error{too_short}; the front in bold.\n"
     names = list(outcome.quantities)
     yield f"| setting | s of computing a second | {' | '.join(names)} |"
     yield "|---|---|" + "---|" * len(names)
@@ -89,7 +91,7 @@ def _lines(outcome: Outcome) -> Iterator[str]:
 
 
 def percent(deviation: Deviation | None) -> str:
-    """A deviation in percent, signed, with its error bar."""
+    """A deviation in percent, signed, with its error bar; "?" where that is too small."""
     if deviation is None or not math.isfinite(deviation.value):
         return "-"
     if deviation.value == deviation.bar == 0:
@@ -97,7 +99,8 @@ def percent(deviation: Deviation | None) -> str:
     value = _rounded(100 * deviation.value)
     if not math.isfinite(deviation.bar):
         return value
-    return f"{value} ± {_rounded(100 * deviation.bar).lstrip('+')}"
+    doubt = "" if deviation.sure else "?"
+    return f"{value} ± {_rounded(100 * deviation.bar).lstrip('+')}{doubt}"
 
 
 def _rounded(percent: float) -> str:
