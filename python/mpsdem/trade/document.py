@@ -34,8 +34,8 @@ def _lines(table: Table) -> Iterator[str]:
     yield ""
     solids, liquid = 1e3 * table.machine.solids, 1e3 * table.machine.liquid
     yield "Costs are seconds of computing each simulated second, on one thread of a machine that"
-    yield f"takes {solids:.3g} ms for the fixed work of the solids and {liquid:.3g} ms for that of the"
-    yield "liquid (`mpsdem.trade.machine`)."
+    yield f"takes {solids:.3g} ms for the fixed work of the solids and {liquid:.3g} ms for that of"
+    yield "the liquid (`mpsdem.trade.machine`)."
     yield "Elsewhere they scale with what the same work takes there: `mpsdem run CASE --budget"
     yield '"10 min"` and `--error 5%` time it, and choose by table and plan.'
     yield ""

@@ -60,8 +60,9 @@ class Deviation:
 
     @property
     def resolved(self) -> bool:
-        """Whether it is more than chance: two error bars."""
-        return math.isfinite(self.value) and not abs(self.value) <= 2 * self.bar
+        """Whether it is more than chance: two error bars, or four that are too small."""
+        bars = 2 if self.sure else 4
+        return math.isfinite(self.value) and not abs(self.value) <= bars * self.bar
 
 
 NONE = Deviation(value=math.nan, bar=math.nan)
