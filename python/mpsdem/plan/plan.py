@@ -54,7 +54,7 @@ _SOLID_TIME = 6e-7  # [s] what a turn does with one solid but moving it: void fr
 _NEIGHBOR_TIME = 9e-9  # [s] one neighbor of one solid, for the void fraction
 # [s] exchange of one solid with one point of the liquid: in a step of the liquid, in a turn, and
 # its memory
-_FOOTPRINT_TIME, _RESPONSE_TIME, _FOOTPRINT_BYTES = 6.6e-8, 5e-9, 24
+_FOOTPRINT_TIME, _RESPONSE_TIME, _FOOTPRINT_BYTES = 5.5e-8, 5e-9, 24
 _SAMPLE_TIME = 2e-8  # [s] one point of a computed liquid at one solid that it does not feel
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 # [s] one step of one liquid particle or node, its pressure included; and where it feels solids, for
@@ -63,7 +63,8 @@ _PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.23e-6, 0.48e-6)}
 _BEYOND_CACHE, _CACHED_NODES = 0.85, 20_000
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _SETUP_TIME = 2e-6  # [s] of one particle or node, once
-_FRAME_TIME = 0.013  # [s] of a frame
+# [s] of a frame, more with solids, and more with a liquid that is written out
+_FRAME_TIME, _SOLIDS_FRAME_TIME, _WRITTEN_FRAME_TIME = 3.5e-3, 6e-3, 5e-3
 _PARTICLE_FRAME_TIME = {"lagrangian": 2.5e-6, "eulerian": 1e-7}  # [s] of a particle or node in it
 _LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
 _LIVELY = 300  # [-] Reynolds number up to which laminar particles damp a swirl
@@ -499,7 +500,10 @@ def _left_out_of_the_motion(case: Case) -> Iterator[Planned]:
 def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     count, steps = case.solids_count, clock.steps
     particles, model = particle_count(case), liquid_model(case) or ""
-    loop = steps * _CALL_TIME[count > 0] + (clock.frames + 1) * _FRAME_TIME
+    frame = _FRAME_TIME + (_SOLIDS_FRAME_TIME if count else 0.0)
+    if particles and case.output.liquid_stride != 0:
+        frame += _WRITTEN_FRAME_TIME
+    loop = steps * _CALL_TIME[count > 0] + (clock.frames + 1) * frame
     moving = count * steps * clock.substeps / SOLID_RATE
     around, of_liquid, solid_bytes = 0.0, 0.0, float(_SOLID_BYTES)
     if count and case.liquid is not None:
@@ -513,7 +517,8 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
         spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
         footprint = 4 / 3 * math.pi * (smoothing_radius(case) / spacing) ** 3
         if is_two_way(case):
-            around += count * footprint * steps * _RESPONSE_TIME
+            if not solids_of(case).held:
+                around += count * footprint * steps * _RESPONSE_TIME
             exchange = count * footprint * steps / turns * _FOOTPRINT_TIME
             solid_bytes += footprint * _FOOTPRINT_BYTES
         else:
