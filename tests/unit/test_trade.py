@@ -21,7 +21,7 @@ from mpsdem.trade.quantities import Deviation, Series, applicable, deviation
 from mpsdem.trade.report import percent
 from mpsdem.trade.runs import Outcome as Run
 from mpsdem.trade.scenes import SCENES
-from mpsdem.trade.schedule import finest, make_schedule
+from mpsdem.trade.schedule import finest, make_schedule, shortened
 from mpsdem.trade.settings import LeftOut, settings_of
 from mpsdem.trade.table import Table, shipped_table
 from mpsdem.trade.workers import InTurn, workers
@@ -500,6 +500,19 @@ def test_the_shipped_table_holds_every_scene_with_its_spacings():
         errors = errors_by_spacing(scene)
         assert set(errors) >= {10, 16, 24}, name
         assert all(math.isfinite(e) for by_name in errors.values() for e in by_name.values())
+
+
+@pytest.mark.parametrize("name", ["case A", "case B"])
+def test_the_plan_foresees_what_was_measured_within_a_factor_of_one_and_a_half(name):
+    table, case = shipped_table(), SCENES[name]().case
+    settings = {str(setting): setting for setting in settings_of(case)[0]}
+    measured = table.scenes[name]
+    for found in measured.rows:
+        plan = make_plan(shortened(settings[str(found)].case, measured.end_time))
+        solids, liquid = plan.estimate.solids_seconds, plan.estimate.liquid_seconds
+        slower = table.machine.slower_than(REFERENCE, of_solids=solids / (solids + liquid))
+        foreseen = slower * (solids + liquid) / measured.end_time
+        assert foreseen / 1.5 < found.rate < foreseen * 1.5, found
 
 
 def test_the_page_on_trades_is_that_of_the_shipped_table():

@@ -58,9 +58,10 @@ _FOOTPRINT_TIME, _RESPONSE_TIME, _FOOTPRINT_BYTES = 5.5e-8, 5e-9, 24
 _SAMPLE_TIME = 2e-8  # [s] one point of a computed liquid at one solid that it does not feel
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 # [s] one step of one liquid particle or node, its pressure included; and where it feels solids, for
-# which nodes part a step in two. Many nodes leave the caches: up to so much more [-].
+# which nodes part a step in two. Their pressure goes through a basis of all nodes of a section,
+# which costs more from 16 spacings across on: so much more at 24 [-].
 _PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.23e-6, 0.48e-6)}
-_BEYOND_CACHE, _CACHED_NODES = 0.85, 20_000
+_FINER_SECTION, _SECTION, _FINE_SECTION = 0.85, 16, 24
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _SETUP_TIME = 2e-6  # [s] of one particle or node, once
 # [s] of a frame, more with solids, and more with a liquid that is written out
@@ -526,8 +527,11 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     if particles:
         of_liquid = particles * steps / turns * _PARTICLE_TIME[model][is_two_way(case)]
         if model == "eulerian":
-            beyond = min(max(math.log10(particles / _CACHED_NODES), 0.0), 1.0)
-            of_liquid *= 1 + _BEYOND_CACHE * beyond
+            across = (
+                2 * case.pipe.radius / case.fidelity.resolved_particle_spacing(case.pipe.radius)
+            )
+            finer = max(0.0, (across - _SECTION) / (_FINE_SECTION - _SECTION))
+            of_liquid *= 1 + _FINER_SECTION * finer
         exchange += particles * (_SETUP_TIME + clock.frames * _PARTICLE_FRAME_TIME[model])
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
