@@ -192,7 +192,7 @@ def trade(
             table.add_row(*cells)
         _out.print(table)
         for sentence in outcome.recommendation():
-            _out.print(sentence, markup=False, highlight=False)
+            _out.print(sentence, soft_wrap=True, markup=False, highlight=False)
         for out in outcome.left_out:
             _out.print(f"[dim]not run: {escape(out.setting)}: {escape(out.reason)}[/]")
         for name in ("trade.md", "trade.csv", "trade.json", "trade.png"):
@@ -335,7 +335,7 @@ def _chosen(
         error=None if error is None else share_of(error, "--error"),
     )
     for line in expectation(chosen):
-        _out.print(line, markup=False, highlight=False)
+        _out.print(line, soft_wrap=True, markup=False, highlight=False)
     return chosen.case, chosen.as_json()
 
 
@@ -367,7 +367,10 @@ def _finish(simulation: Simulation) -> None:
             table.add_row(name, shown, _error_bar(summary["averages"].get(name)))
     _out.print(table)
     if (expected := summary.get("expected")) is not None:
-        took, foreseen = _duration(summary["wall_seconds"]), _duration(expected["wall_seconds"])
+        took, foreseen = (
+            f"{_duration(what['wall_seconds'])} ({_duration(what['cpu_seconds'])} of computing)"
+            for what in (summary, expected)
+        )
         _out.print(f"{expected['setting']}: took {took}, where about {foreseen} were expected")
     for warning in summary["warnings"]:
         _warn(warning)

@@ -110,8 +110,8 @@ def choose(
 def expectation(chosen: Candidate) -> Iterator[str]:
     """What a run of a candidate is expected to cost and to be worth, in lines."""
     yield (
-        f"{chosen.setting}: about {chosen.seconds:.2g} s by the clock, {chosen.cpu_seconds:.2g} s "
-        "of computing"
+        f"{chosen.setting}: about {in_words(chosen.seconds)} by the clock, "
+        f"{in_words(chosen.cpu_seconds)} of computing"
     )
     if chosen.errors:
         each = ", ".join(f"{name} {100 * e:.2g} %" for name, e in chosen.errors.items())
@@ -120,6 +120,14 @@ def expectation(chosen: Candidate) -> Iterator[str]:
         yield "errors: no scene of the table is like this case; `mpsdem trade` measures them"
     if left := [stage.name for stage in chosen.plan.left_out]:
         yield f"left out: {', '.join(left)}"
+
+
+def in_words(seconds: float) -> str:
+    """A time with two digits and the unit that suits it."""
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 1.5 * size:
+            return f"{seconds / size:.2g} {unit}"
+    return f"{seconds:.2g} s"
 
 
 def seconds_of(text: str, field: str) -> float:
@@ -163,7 +171,8 @@ def _within_time(known: Sequence[Candidate], seconds: float) -> Candidate:
             field="--budget",
             value=f"{seconds:g} s",
             unit="s",
-            rule=f"the cheapest setting, {cheapest.setting}, takes about {cheapest.seconds:.2g} s",
+            rule=f"the cheapest setting, {cheapest.setting}, takes about "
+            + in_words(cheapest.seconds),
             remedy="allow for it, or shorten the run with --until",
         )
         raise CaseError([problem])
@@ -188,7 +197,7 @@ def _within_error(known: Sequence[Candidate], error: float) -> Candidate:
             field="--error",
             value=f"{100 * error:.3g} %",
             rule=f"the most accurate setting, {best.setting}, is known to {100 * best.error:.2g} % "
-            f"of {worst}, and takes about {best.seconds:.2g} s",
+            f"of {worst}, and takes about {in_words(best.seconds)}",
             remedy="allow for it",
         )
         raise CaseError([problem])

@@ -55,7 +55,7 @@ def measure(
         scene = SCENES[name]()
         outcome = trade(
             scene.case,
-            scratch / name.replace(" ", "_").replace(",", ""),
+            scratch / name.replace(" ", "_"),
             quantities=scene.quantities,
             exact=scene.exact,
             seconds=_LONG,

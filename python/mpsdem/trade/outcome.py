@@ -228,7 +228,7 @@ def _told(row: Row) -> str:
 
 
 def _times(ratio: float) -> str:
-    return f"{ratio:.2g} times"
+    return f"{ratio:.0f} times" if ratio >= 10 else f"{ratio:.2g} times"
 
 
 def _percent(deviation: Deviation) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 from mpsdem.case import Case
@@ -48,14 +47,13 @@ def poiseuille() -> Scene:
     return Scene(case=case, quantities=("pressure_gradient",))
 
 
-def friction(model: str) -> Scene:
+def friction() -> Scene:
     """Turbulent water at a Reynolds number of 2e5 in a smooth pipe; Colebrook's loss is known."""
-    kind = {"eulerian": "nodes", "lagrangian": "particles"}[model]
     case = _case(
-        f"Turbulent friction, {kind}",
+        "Turbulent friction, nodes",
         end_time=4.0,
         pipe={"radius": 0.1, "length": 0.4},
-        liquid=_WATER | {"model": model, "bulk_velocity": 1.0},
+        liquid=_WATER | {"model": "eulerian", "bulk_velocity": 1.0},
     )
     return Scene(case=case, quantities=("pressure_gradient",))
 
@@ -129,8 +127,7 @@ def case_b() -> Scene:
 #: By the names in the table.
 SCENES: Mapping[str, Callable[[], Scene]] = {
     "poiseuille": poiseuille,
-    "friction": partial(friction, "eulerian"),
-    "friction, particles": partial(friction, "lagrangian"),
+    "friction": friction,
     "settling": settling,
     "packed bed": bed,
     "case A": case_a,
