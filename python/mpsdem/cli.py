@@ -1,4 +1,4 @@
-"""The command line: `mpsdem run`, `resume`, `explain`, `report`, `export`, `validate`, `info`."""
+"""The command line: `mpsdem run`, `resume`, `explain`, `report`, `trade`, `export`, ..."""
 
 from __future__ import annotations
 
@@ -56,6 +56,17 @@ Settings = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Set a key, such as solids.density=2500."),
 ]
 
+Budget = Annotated[
+    str | None,
+    typer.Option(
+        "--budget", metavar="TIME", help="Most accurate fidelity for a time, such as '10 min'."
+    ),
+]
+Error = Annotated[
+    str | None,
+    typer.Option("--error", metavar="E", help="Cheapest fidelity for an error, such as 5%."),
+]
+
 
 def main() -> None:
     """Entry point of the command `mpsdem`."""
@@ -75,6 +86,8 @@ def run(
     until: Until = None,
     fidelity: Fidelity = None,
     settings: Settings = None,
+    budget: Budget = None,
+    error: Error = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace results that stand there.")
     ] = False,
@@ -89,7 +102,8 @@ def run(
 
         case = _case(case_file, until, fidelity, settings)
         output = output or (None if case.title else Path("out", case_file.stem))
-        _finish(Simulation(case, output, overwrite=overwrite))
+        case, expected = _chosen(case, fidelity, budget, error)
+        _finish(Simulation(case, output, overwrite=overwrite, expected=expected))
 
 
 @app.command()
@@ -107,12 +121,16 @@ def explain(
     until: Until = None,
     fidelity: Fidelity = None,
     settings: Settings = None,
+    budget: Budget = None,
+    error: Error = None,
 ) -> None:
     """Say what a case requires and why, what limits its steps, and what it will cost."""
     with _plain_errors():
         from mpsdem.plan import make_plan
 
-        _show_plan(make_plan(_case(case_file, until, fidelity, settings)))
+        case = _case(case_file, until, fidelity, settings)
+        case, _ = _chosen(case, fidelity, budget, error)
+        _show_plan(make_plan(case))
 
 
 @app.command()
@@ -127,6 +145,58 @@ def report(directory: RunDirectory) -> None:
         _show_report(json.loads(report.read_bytes()))
         for path in (report, *figures):
             _out.print(str(path), soft_wrap=True, markup=False, highlight=False)
+
+
+@app.command()
+def trade(
+    case_file: CaseFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Directory; by default out/trade/CASE."),
+    ] = None,
+    quantity: Annotated[
+        str | None,
+        typer.Option(
+            "--quantity", metavar="NAME,...", help="Names of summary.json; by default the usual."
+        ),
+    ] = None,
+    time: Annotated[
+        str, typer.Option("--time", metavar="TIME", help="What all of it may take.")
+    ] = "20 min",
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask cluster to run on."),
+    ] = None,
+    fidelity: Fidelity = None,
+    settings: Settings = None,
+) -> None:
+    """Measure what each knob of the fidelity costs, and how far it moves the results.
+
+    Knobs are turned one at a time around the case's fidelity. Start it again to go on with it.
+    """
+    with _plain_errors():
+        from mpsdem.trade import report_rows, seconds_of
+        from mpsdem.trade import trade as measure
+
+        output = output or Path("out", "trade", case_file.stem)
+        outcome = measure(
+            _case(case_file, None, fidelity, settings),
+            output,
+            quantities=quantity.split(",") if quantity else None,
+            seconds=seconds_of(time, "--time"),
+            scheduler=scheduler,
+            tell=lambda text: _out.print(f"[dim]{escape(text)}[/]", highlight=False),
+        )
+        table = _table("setting", "s of computing a second", *outcome.quantities)
+        for cells in report_rows(outcome):
+            table.add_row(*cells)
+        _out.print(table)
+        for sentence in outcome.recommendation():
+            _out.print(sentence, soft_wrap=True, markup=False, highlight=False)
+        for out in outcome.left_out:
+            _out.print(f"[dim]not run: {escape(out.setting)}: {escape(out.reason)}[/]")
+        for name in ("trade.md", "trade.csv", "trade.json", "trade.png"):
+            _out.print(str(output / name), soft_wrap=True, markup=False, highlight=False)
 
 
 @app.command()
@@ -249,6 +319,26 @@ def _case(
     return case.with_settings(settings or [])
 
 
+def _chosen(
+    case: Case, fidelity: Level | None, budget: str | None, error: str | None
+) -> tuple[Case, dict[str, Any] | None]:
+    """The case at the fidelity that a budget or an error asks for, and what is expected of it."""
+    if budget is None and error is None:
+        return case, None
+    if (budget, error, fidelity).count(None) < 2:
+        raise typer.BadParameter("give one of them", param_hint="--budget, --error, --fidelity")
+    from mpsdem.trade import choose, expectation, seconds_of, share_of
+
+    chosen = choose(
+        case,
+        seconds=None if budget is None else seconds_of(budget, "--budget"),
+        error=None if error is None else share_of(error, "--error"),
+    )
+    for line in expectation(chosen):
+        _out.print(line, soft_wrap=True, markup=False, highlight=False)
+    return chosen.case, chosen.as_json()
+
+
 def _numbers(text: str) -> list[float]:
     try:
         return [float(number) for number in text.split(",")]
@@ -276,6 +366,12 @@ def _finish(simulation: Simulation) -> None:
             shown = f"{value:.4g} {unit}" if isinstance(value, float) else str(value)
             table.add_row(name, shown, _error_bar(summary["averages"].get(name)))
     _out.print(table)
+    if (expected := summary.get("expected")) is not None:
+        took, foreseen = (
+            f"{_duration(what['wall_seconds'])} ({_duration(what['cpu_seconds'])} of computing)"
+            for what in (summary, expected)
+        )
+        _out.print(f"{expected['setting']}: took {took}, where about {foreseen} were expected")
     for warning in summary["warnings"]:
         _warn(warning)
     _out.print(f"results in {results.directory}", soft_wrap=True, markup=False, highlight=False)

@@ -45,6 +45,9 @@ MAY_IMPORT = {
         "stages",
     },
 }
+MAY_IMPORT["trade"] = (
+    {"validation"} | MAY_IMPORT["simulation"] - {"liquids", "stages"} | {"simulation"}
+)
 ABOVE_ALL = {"validation", "cli", "__init__", "__main__"}  # these may import every layer
 
 SOURCES = sorted(CPP.rglob("*.[ch]pp"))

@@ -47,15 +47,26 @@ SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 # Up to as many solids and particles, or nodes, threads cost more than they gain.
 _SERIAL, _SERIAL_NODES = 5000, 30_000
 _FRAMES = 8  # of a period of motion, that show it
-_SERIAL = 5000  # solids up to which threads cost more than they gain
-_SAMPLE_TIME = 2e-6  # [s] liquid, void fraction and drag of one solid, once
-# [s] exchange of one solid with one point of the liquid, once, and its memory
-_FOOTPRINT_TIME, _FOOTPRINT_BYTES = 5e-8, 24
-_CALL_TIME = 1e-4  # [s] one turn of the time loop
+# What the estimate is made of, in processor time of a machine on which `mpsdem.trade.machine`
+# takes 0.031 s for its solids and 0.027 s for its liquid; fitted to runs of twenty kinds.
+_CALL_TIME = {True: 3.5e-4, False: 2e-4}  # [s] one turn of the time loop, with solids and without
+_SOLID_TIME = 6e-7  # [s] what a turn does with one solid but moving it: void fraction, drag
+_NEIGHBOR_TIME = 9e-9  # [s] one neighbor of one solid, for the void fraction
+# [s] exchange of one solid with one point of the liquid: in a step of the liquid, in a turn, and
+# its memory
+_FOOTPRINT_TIME, _RESPONSE_TIME, _FOOTPRINT_BYTES = 5.5e-8, 5e-9, 24
+_SAMPLE_TIME = 2e-8  # [s] one point of a computed liquid at one solid that it does not feel
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
-# [s] one step of one liquid particle or node, its pressure included, and its memory
-_PARTICLE_TIME = {"lagrangian": 2e-6, "eulerian": 0.4e-6}
+# [s] one step of one liquid particle or node, its pressure included; and where it feels solids, for
+# which nodes part a step in two. Their pressure goes through a basis of all nodes of a section,
+# which costs more from 16 spacings across on: so much more at 24 [-].
+_PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.23e-6, 0.48e-6)}
+_FINER_SECTION, _SECTION, _FINE_SECTION = 0.85, 16, 24
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
+_SETUP_TIME = 2e-6  # [s] of one particle or node, once
+# [s] of a frame, more with solids, and more with a liquid that is written out
+_FRAME_TIME, _SOLIDS_FRAME_TIME, _WRITTEN_FRAME_TIME = 3.5e-3, 6e-3, 5e-3
+_PARTICLE_FRAME_TIME = {"lagrangian": 2.5e-6, "eulerian": 1e-7}  # [s] of a particle or node in it
 _LIQUID_KINDS = {"lagrangian": "particles", "eulerian": "fixed nodes"}  # of computed liquids
 _LIVELY = 300  # [-] Reynolds number up to which laminar particles damp a swirl
 # Wall units from the wall below which the nodes' friction is 4 % high: 4.3 % at 15, 3.6 % at 26.
@@ -83,9 +94,21 @@ class Planned:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Estimate:
-    """What the run will take, within a factor of about two."""
+    """What the run will take, within a factor of 1.5 on the machine that it was fitted on.
+
+    Attributes
+    ----------
+    wall_seconds : float
+        By the clock [s].
+    solids_seconds, liquid_seconds : float
+        Of computing: what the solids and the time loop take, and what the liquid and its exchange
+        with solids take [s].
+    memory_bytes, disk_bytes : float
+    """
 
     wall_seconds: float
+    solids_seconds: float
+    liquid_seconds: float
     memory_bytes: float
     disk_bytes: float
 
@@ -478,23 +501,44 @@ def _left_out_of_the_motion(case: Case) -> Iterator[Planned]:
 def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
     count, steps = case.solids_count, clock.steps
     particles, model = particle_count(case), liquid_model(case) or ""
-    particle_time = particles * _PARTICLE_TIME.get(model, 0.0)
-    particle_bytes = particles * _PARTICLE_BYTES.get(model, 0)
-    exchange_time, solid_bytes = 0.0, float(_SOLID_BYTES)
-    if is_two_way(case):
+    frame = _FRAME_TIME + (_SOLIDS_FRAME_TIME if count else 0.0)
+    if particles and case.output.liquid_stride != 0:
+        frame += _WRITTEN_FRAME_TIME
+    loop = steps * _CALL_TIME[count > 0] + (clock.frames + 1) * frame
+    moving = count * steps * clock.substeps / SOLID_RATE
+    around, of_liquid, solid_bytes = 0.0, 0.0, float(_SOLID_BYTES)
+    if count and case.liquid is not None:
+        neighbors = (
+            case.solids_fraction
+            * (2 * smoothing_radius(case) / mean_diameter(solids_of(case))) ** 3
+        )
+        around = count * steps * (_SOLID_TIME + neighbors * _NEIGHBOR_TIME)
+    exchange = 0.0
+    if count and particles:
         spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
         footprint = 4 / 3 * math.pi * (smoothing_radius(case) / spacing) ** 3
-        # twice a step of the liquid, which is parted in two, and once a turn; on one thread
-        exchange_time = count * footprint * _FOOTPRINT_TIME * (1 + 2 / turns)
-        particle_time *= 2
-        solid_bytes += footprint * _FOOTPRINT_BYTES
+        if is_two_way(case):
+            if not solids_of(case).held:
+                around += count * footprint * steps * _RESPONSE_TIME
+            exchange = count * footprint * steps / turns * _FOOTPRINT_TIME
+            solid_bytes += footprint * _FOOTPRINT_BYTES
+        else:
+            around += count * footprint * steps * _SAMPLE_TIME
+    if particles:
+        of_liquid = particles * steps / turns * _PARTICLE_TIME[model][is_two_way(case)]
+        if model == "eulerian":
+            across = (
+                2 * case.pipe.radius / case.fidelity.resolved_particle_spacing(case.pipe.radius)
+            )
+            finer = max(0.0, (across - _SECTION) / (_FINE_SECTION - _SECTION))
+            of_liquid *= 1 + _FINER_SECTION * finer
+        exchange += particles * (_SETUP_TIME + clock.frames * _PARTICLE_FRAME_TIME[model])
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
-        wall_seconds=(
-            count * steps * (clock.substeps / SOLID_RATE / threads + _SAMPLE_TIME)
-            + steps * (_CALL_TIME + exchange_time + particle_time / turns / threads)
-        ),
-        memory_bytes=_BASE_BYTES + count * solid_bytes + particle_bytes,
+        wall_seconds=loop + around + exchange + (moving + of_liquid) / threads,
+        solids_seconds=loop + around + moving,
+        liquid_seconds=exchange + of_liquid,
+        memory_bytes=_BASE_BYTES + count * solid_bytes + particles * _PARTICLE_BYTES.get(model, 0),
         disk_bytes=frame_bytes * (clock.frames + 1),
     )
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +27,7 @@ from mpsdem.results import (
     write_checkpoint,
     write_summary,
 )
+from mpsdem.results.files import write_atomically
 from mpsdem.simulation.plug import watch_for_plug
 from mpsdem.simulation.summary import summarize
 from mpsdem.simulation.watch import (
@@ -49,6 +52,8 @@ from mpsdem.stages import (
     check,
 )
 
+_EXPECTED = "expected.json"  # what was foreseen, kept beside the results for a run that is resumed
+
 
 class Simulation:
     """A case that is ready to run.
@@ -61,6 +66,8 @@ class Simulation:
         Directory for the results; by default ``out/`` and the title of the case.
     overwrite : bool
         Whether results that stand there may be replaced.
+    expected : mapping, optional
+        What was foreseen of the run, in JSON's types; its summary repeats it as ``expected``.
 
     Raises
     ------
@@ -80,8 +87,10 @@ class Simulation:
         output: str | os.PathLike[str] | None = None,
         *,
         overwrite: bool = False,
+        expected: Mapping[str, Any] | None = None,
     ) -> None:
         self.case = case
+        self._expected = expected
         self.plan = make_plan(case)
         self.directory = Path("out", _slug(case.title)) if output is None else Path(output)
         self._overwrite = overwrite
@@ -183,8 +192,11 @@ class Simulation:
             )
         stopwatch = Stopwatch()
         state = build_state(self.case, self.plan)
-        for name in ("results.h5", "checkpoint.h5", "summary.json"):
+        for name in ("results.h5", "checkpoint.h5", "summary.json", _EXPECTED):
             (self.directory / name).unlink(missing_ok=True)
+        if self._expected is not None:
+            text = json.dumps(self._expected, indent=1, ensure_ascii=False)
+            write_atomically(self.directory / _EXPECTED, text.encode())
         _log_plan(self.plan)
         return state, self._new_writer(state), stopwatch
 
@@ -263,6 +275,8 @@ class Simulation:
         with Results(self.directory) as results:
             values, not_applicable = summarize(self.plan, state, results)
         values |= {"status": status, "wall_seconds": stopwatch.wall, "cpu_seconds": stopwatch.cpu}
+        if (expected := self.directory / _EXPECTED).exists():
+            values["expected"] = json.loads(expected.read_bytes())
         write_summary(self.directory, values, not_applicable=not_applicable)
         LOG.info("%s at %g s after %.1f s of wall clock", status, state.time, stopwatch.wall)
 

@@ -444,7 +444,7 @@ def _crowd_speed(model: str, void_fraction: float) -> float:
     return -_flow(case).velocity / (eps * float(brentq(excess, 1e-6, 10.0)))
 
 
-def _ergun(velocity: float, void_fraction: float, diameter: float) -> float:
+def ergun_loss(velocity: float, void_fraction: float, diameter: float) -> float:
     """Loss of pressure in a packed bed, at a superficial velocity [Pa/m]."""
     viscous = 150 * VISCOSITY * (1 - void_fraction) / diameter
     return (
@@ -456,7 +456,7 @@ def _ergun(velocity: float, void_fraction: float, diameter: float) -> float:
     )
 
 
-def _bed(
+def packed_bed(
     model: str,
     velocity: float,
     *,
@@ -493,7 +493,7 @@ def _bed(
 @cache
 def _bed_loss(model: str, velocity: float, spacing: float = 1.0, smoothing: float = 0.0) -> float:
     """Loss of pressure over Ergun's; spacing and smoothing radius in diameters, 0 by default."""
-    case, eps = _bed(
+    case, eps = packed_bed(
         model,
         velocity,
         held=True,
@@ -502,16 +502,16 @@ def _bed_loss(model: str, velocity: float, spacing: float = 1.0, smoothing: floa
         smoothing=smoothing,
         planes=13 if spacing > 1 or smoothing > 0 else 7,
     )
-    return _flow(case).gradient / _ergun(velocity, eps, 2e-3)
+    return _flow(case).gradient / ergun_loss(velocity, eps, 2e-3)
 
 
 @cache
 def _hover(model: str) -> tuple[float, float]:
     """Velocity at which the bed would stand still over Ergun's, and gradient over weight."""
-    _, eps = _bed(model, 0.03, held=False, end_time=1.0)
+    _, eps = packed_bed(model, 0.03, held=False, end_time=1.0)
     weight = (1 - eps) * (GLASS - WATER) * GRAVITY
-    onset = float(brentq(lambda u: _ergun(u, eps, 2e-3) - weight, 1e-4, 1.0))
-    case, _ = _bed(model, onset, held=False, end_time=0.3)
+    onset = float(brentq(lambda u: ergun_loss(u, eps, 2e-3) - weight, 1e-4, 1.0))
+    case, _ = packed_bed(model, onset, held=False, end_time=0.3)
     flow = _flow(case)
     return (onset - flow.velocity) / onset, flow.gradient / flow.weight
 
