@@ -2,6 +2,9 @@
 #include "linear/cross_section_solver.hpp"
 
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <optional>
 
 namespace mpsdem::bindings {
 
@@ -17,16 +20,24 @@ struct Solver {
 };
 
 Solver solver_of(const Array<Real>& interior, const Array<Real>& wall, const Array<Real>& axial,
-                 std::size_t stations) {
+                 std::size_t stations, const std::optional<Array<Index>>& mirrors) {
     require(interior.ndim() == 2 && wall.ndim() == 2, "interior and wall must be matrices");
     const auto inner = static_cast<std::size_t>(interior.shape(0));
     const auto at_wall = static_cast<std::size_t>(wall.shape(0));
+    linear::Mirrors images;
+    if (mirrors) {
+        require(mirrors->ndim() == 2 && mirrors->shape(0) == 2,
+                "mirrors must have shape (2, nodes)");
+        const auto nodes = static_cast<std::size_t>(mirrors->shape(1));
+        images = {{mirrors->data(), nodes}, {mirrors->data() + nodes, nodes}};
+    }
     return {{{interior.data(), static_cast<std::size_t>(interior.size())},
              {wall.data(), static_cast<std::size_t>(wall.size())},
              inner,
              at_wall,
              values(axial, "axial"),
-             stations},
+             stations,
+             images},
             Field(inner + at_wall, stations)};
 }
 
@@ -65,6 +76,9 @@ axial : (stations // 2 + 1,) float64 ndarray
     What d2/dx2 makes of each wave, over the wave, <= 0 [1/m2].
 stations : int
     Along the axis, a multiple of 4.
+mirrors : (2, n + w) uint32 ndarray, optional
+    Each node's image in either of two mirrors; where A and B share them, the even and the odd parts
+    are solved apart.
 
 Raises
 ------
@@ -75,7 +89,8 @@ References
 ----------
 Lynch, Rice & Thomas (1964) doi:10.1007/BF01386067.
 )")
-        .def(py::init(&solver_of), py::kw_only(), "interior"_a, "wall"_a, "axial"_a, "stations"_a)
+        .def(py::init(&solver_of), py::kw_only(), "interior"_a, "wall"_a, "axial"_a, "stations"_a,
+             "mirrors"_a = py::none())
         .def("solve", &solve, "right_hand_side"_a, py::kw_only(), "threads"_a = 1,
              R"(Solve for one right-hand side.
 

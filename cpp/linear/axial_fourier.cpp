@@ -38,22 +38,24 @@ AxialFourier::AxialFourier(AxialFourier&&) noexcept = default;
 AxialFourier& AxialFourier::operator=(AxialFourier&&) noexcept = default;
 AxialFourier::~AxialFourier() = default;
 
-void AxialFourier::forward(const Field& values, std::size_t count, int threads,
+void AxialFourier::forward(const Field& values, std::span<const Index> row, int threads,
                            std::span<Real> spectra) const {
     parallel_for(plans_->of_group.size(), threads, [&](std::size_t g) {
-        for (std::size_t i = plans_->begin(g, count); i < plans_->begin(g + 1, count); ++i) {
+        for (std::size_t i = plans_->begin(g, row.size()); i < plans_->begin(g + 1, row.size());
+             ++i) {
             // std::complex is two Reals in a row by the standard
-            auto* to = reinterpret_cast<Complex*>(spectra.data() + i * columns_);
+            auto* to = reinterpret_cast<Complex*>(spectra.data() + row[i] * columns_);
             plans_->of_group[g].fwd(to, values[i], static_cast<Eigen::Index>(stations_));
         }
     });
 }
 
-void AxialFourier::inverse(std::span<const Real> spectra, std::size_t count, int threads,
+void AxialFourier::inverse(std::span<const Real> spectra, std::span<const Index> row, int threads,
                            Field& values) const {
     parallel_for(plans_->of_group.size(), threads, [&](std::size_t g) {
-        for (std::size_t i = plans_->begin(g, count); i < plans_->begin(g + 1, count); ++i) {
-            const auto* from = reinterpret_cast<const Complex*>(spectra.data() + i * columns_);
+        for (std::size_t i = plans_->begin(g, row.size()); i < plans_->begin(g + 1, row.size());
+             ++i) {
+            const auto* from = reinterpret_cast<const Complex*>(spectra.data() + row[i] * columns_);
             plans_->of_group[g].inv(values[i], from, static_cast<Eigen::Index>(stations_));
             values.wrap(i, 0, stations_);
         }

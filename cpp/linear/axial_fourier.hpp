@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/field.hpp"
+#include "core/vec3.hpp"
 
 #include <memory>
 #include <span>
@@ -19,10 +20,10 @@ public:
 
     [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
 
-    /// Of the rows [0, count).
-    void forward(const Field& values, std::size_t count, int threads,
+    /// Of the nodes [0, row.size()); the spectrum of node i is row[i] of the spectra.
+    void forward(const Field& values, std::span<const Index> row, int threads,
                  std::span<Real> spectra) const;
-    void inverse(std::span<const Real> spectra, std::size_t count, int threads,
+    void inverse(std::span<const Real> spectra, std::span<const Index> row, int threads,
                  Field& values) const;
 
 private:

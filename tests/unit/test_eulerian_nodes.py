@@ -47,10 +47,18 @@ def test_the_areas_integrate_a_quartic_over_the_bore(across):
     )
 
 
-def test_the_pattern_is_its_own_mirror_image(nodes):
-    mirrored = nodes.place * [1, -1]
-    away = np.linalg.norm(nodes.place[:, None] - mirrored, axis=2).min(axis=1)
-    assert away.max() < 1e-12
+def images(nodes):
+    """Each node's image in the z axis and in the y axis, (2, nodes), and how far it is off it."""
+    away = [
+        np.linalg.norm(nodes.place[:, None] * sign - nodes.place, axis=2)
+        for sign in ([-1, 1], [1, -1])
+    ]
+    return np.argmin(away, axis=2).astype(np.uint32), np.max(np.min(away, axis=2))
+
+
+@pytest.mark.parametrize("across", [6, 10, 16, 24, 27, 40])
+def test_the_pattern_is_its_own_mirror_image(across):
+    assert images(layout(across))[1] < 1e-12
 
 
 @pytest.mark.parametrize("length", [0.05, 0.1, 0.37, 1.0, 2.9, 8.8])
@@ -183,6 +191,40 @@ def test_the_direct_solver_agrees_with_a_factor_of_the_whole_pipe(nodes):
     whole = np.append(0.0, linalg.splu(matrix[1:, 1:]).solve(b[1:]))  # p is 0 at its first place
     solution = linear.CrossSectionSolver(**problem).solve(b.reshape(-1, n)).ravel()
     assert solution - solution[0] == pytest.approx(whole, abs=1e-9)
+
+
+@pytest.mark.parametrize("across", [6, 10, 16, 27])
+def test_even_and_odd_parts_solved_apart_are_the_whole_solution(across):
+    nodes = layout(across)
+    problem = pressure_problem(nodes)
+    p = np.random.default_rng(5).standard_normal((len(nodes.place), problem["stations"]))
+    b = residual(problem, p, np.zeros_like(p), nodes.spacing)
+    whole = linear.CrossSectionSolver(**problem).solve(b)
+    apart = linear.CrossSectionSolver(**problem, mirrors=images(nodes)[0]).solve(b)
+    assert apart == pytest.approx(whole, abs=1e-10)
+
+
+def test_mirrors_that_the_operators_do_not_share_change_nothing(nodes):
+    problem = pressure_problem(nodes)
+    problem["interior"][0, [0, 5]] += 1e-6 * problem["interior"][0, 0] * np.array([1, -1])
+    b = np.random.default_rng(6).standard_normal((len(nodes.place), problem["stations"]))
+    whole = linear.CrossSectionSolver(**problem).solve(b)
+    mirrored = linear.CrossSectionSolver(**problem, mirrors=images(nodes)[0]).solve(b)
+    assert np.array_equal(whole, mirrored)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda of: np.roll(of, 1, axis=1), "its own inverse"),
+        (lambda of: of[:, :-1], "one image per node"),
+        (lambda of: of[:1], "must have shape"),
+    ],
+)
+def test_mirrors_that_are_none_are_refused(nodes, change, message):
+    mirrors = np.ascontiguousarray(change(images(nodes)[0]))
+    with pytest.raises(ValueError, match=message):
+        linear.CrossSectionSolver(**pressure_problem(nodes), mirrors=mirrors)
 
 
 def test_a_source_that_no_pressure_has_is_dropped_not_amplified(nodes):

@@ -50,8 +50,10 @@ linear::CrossSectionSolver solver_of(const Section& section, const Stencil<2>& g
             wall[w * all + j] = n.y * y[at] + n.z * z[at];
         }
     }
-    return {std::span(interior).first(inner * all), wall,    inner, section.wall_count(),
-            axial.second_symbol(stations),          stations};
+    std::vector<Index> across = section.image({0, -1, 1}), down = section.image({0, 1, -1});
+    if (across.empty() || down.empty()) across = down = {};
+    return {std::span(interior).first(inner * all), wall,     inner,         section.wall_count(),
+            axial.second_symbol(stations),          stations, {across, down}};
 }
 
 } // namespace

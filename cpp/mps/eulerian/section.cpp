@@ -2,6 +2,7 @@
 
 #include "core/check.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mpsdem::mps::eulerian {
@@ -62,6 +63,18 @@ Between Section::between(std::span<const Index> ring, std::size_t i) const {
     b.share[1] = before + after > 0 ? before / (before + after) : 0;
     b.share[0] = 1 - b.share[1];
     return b;
+}
+
+std::vector<Index> Section::image(const Vec3& sign) const {
+    std::vector<Index> of_node;
+    for (const Vec3& x : place_) {
+        const Vec3 mirrored{0, sign.y * x.y, sign.z * x.z};
+        const auto same = std::ranges::find_if(
+            place_, [&](const Vec3& other) { return norm(other - mirrored) < 1e-9 * spacing_; });
+        if (same == place_.end()) return {};
+        of_node.push_back(static_cast<Index>(same - place_.begin()));
+    }
+    return of_node;
 }
 
 } // namespace mpsdem::mps::eulerian

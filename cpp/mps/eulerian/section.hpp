@@ -62,6 +62,10 @@ public:
     /// Of layer node l (counted from 0): the place on the wall outward of it.
     [[nodiscard]] const Between& at_wall(std::size_t l) const noexcept { return at_wall_[l]; }
 
+    /// The image of each node where the signs of y and z are those of `sign`; empty where the
+    /// pattern is not its own image.
+    [[nodiscard]] std::vector<Index> image(const Vec3& sign) const;
+
 private:
     [[nodiscard]] Between between(std::span<const Index> ring, std::size_t i) const;
 

@@ -303,6 +303,9 @@ class CrossSectionSolver:
         What d2/dx2 makes of each wave, over the wave, <= 0 [1/m2].
     stations : int
         Along the axis, a multiple of 4.
+    mirrors : (2, n + w) uint32 ndarray, optional
+        Each node's image in either of two mirrors; where A and B share them, the even and the odd parts
+        are solved apart.
     
     Raises
     ------
@@ -313,7 +316,7 @@ class CrossSectionSolver:
     ----------
     Lynch, Rice & Thomas (1964) doi:10.1007/BF01386067.
     """
-    def __init__(self, *, interior: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axial: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], stations: typing.SupportsInt | typing.SupportsIndex) -> None:
+    def __init__(self, *, interior: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wall: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axial: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], stations: typing.SupportsInt | typing.SupportsIndex, mirrors: typing.Annotated[numpy.typing.ArrayLike, numpy.uint32] | None = None) -> None:
         ...
     def solve(self, right_hand_side: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> numpy.typing.NDArray[numpy.float64]:
         """

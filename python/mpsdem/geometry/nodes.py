@@ -57,8 +57,8 @@ class NodeLayout:
 def node_layout(*, radius: float, length: float, spacing: float) -> NodeLayout:
     """Nodes on rings about the axis, the outermost on the wall.
 
-    Ring k lies at ``k dx`` and holds ``round(2 pi k)`` nodes, one of them on the y axis, so that
-    the pattern is its own mirror image.
+    Ring k lies at ``k dx`` and holds ``2 round(pi k)`` nodes, one of them on the y axis, so that
+    the pattern is its own image in that axis and in the z axis.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def node_layout(*, radius: float, length: float, spacing: float) -> NodeLayout:
             f"spacing = {spacing}: must be at most {widest:g} m, a third of the radius"
         )
     dx = radius / rings
-    counts = [1, *(round(2 * np.pi * k) for k in range(1, rings + 1))]
+    counts = [1, *(2 * round(np.pi * k) for k in range(1, rings + 1))]
     ring = np.repeat(np.arange(rings + 1), counts)
     angle = np.concatenate([2 * np.pi * np.arange(count) / count for count in counts])
     place = (ring * dx)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
