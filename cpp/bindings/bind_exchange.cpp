@@ -35,12 +35,15 @@ smoothing_radius : float
     Over which a solid acts on the liquid, and samples it [m].
 liquid_density : float
     [kg/m3].
+threads : int
+    The result does not depend on it.
 
 References
 ----------
 Zhou, Kuang, Chu & Yu (2010) doi:10.1017/S002211201000306X, set II.
 )")
-        .def(py::init<Real, Real>(), py::kw_only(), "smoothing_radius"_a, "liquid_density"_a)
+        .def(py::init<Real, Real, int>(), py::kw_only(), "smoothing_radius"_a, "liquid_density"_a,
+             "threads"_a = 1)
         .def(
             "begin",
             [](Exchange& e, const Particles& liquid, const Array<Real>& position,

@@ -1,6 +1,8 @@
 #include "coupling/exchange.hpp"
 
 #include "core/check.hpp"
+#include "core/field.hpp"
+#include "core/ordered_sum.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -21,12 +23,13 @@ void require_places(std::span<const Vec3> position, Real period) {
 
 } // namespace
 
-Exchange::Exchange(Real smoothing_radius, Real liquid_density)
-    : footprints_(SmoothingKernel{smoothing_radius}), density_(liquid_density) {
+Exchange::Exchange(Real smoothing_radius, Real liquid_density, int threads)
+    : footprints_(SmoothingKernel{smoothing_radius}), density_(liquid_density), threads_(threads) {
     require(std::isfinite(smoothing_radius) && smoothing_radius > 0,
             "Exchange: smoothing_radius must be > 0 m");
     require(std::isfinite(liquid_density) && liquid_density > 0,
             "Exchange: liquid_density must be > 0 kg/m3");
+    require(threads >= 1, "Exchange: threads must be >= 1");
 }
 
 void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velocity,
@@ -43,67 +46,55 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
         volume_[p] = 4. / 3 * std::numbers::pi * radius[p] * radius[p] * radius[p];
     points_ = points;
     field_ = velocity;
-    footprints_.find(points, position);
-    at_point_.assign(points.position.size(), {});
-    for (std::size_t p = 0; p < position.size(); ++p)
-        footprints_.each(p, [&](Index i, Real w) { at_point_[i].volume += w * volume_[p]; });
-    find_void_fraction(points);
+    footprints_.find(points, position, threads_);
     velocity_.resize(position.size());
     acceleration_.assign(position.size(), {});
-    for (std::size_t p = 0; p < position.size(); ++p) {
+    parallel_for(position.size(), threads_, [&](std::size_t p) {
         velocity_[p] = footprints_.sample(p, velocity);
         if (!acceleration.empty()) acceleration_[p] = footprints_.sample(p, acceleration);
-    }
+    });
 }
 
-/// Void fractions from the volume of solids at each point [m3].
-void Exchange::find_void_fraction(const mps::LiquidPoints& points) {
-    void_fraction_.resize(points.position.size());
-    clipped_now_ = 0;
-    Real bore = 0, liquid = 0, solids = 0;
-    for (std::size_t i = 0; i < void_fraction_.size(); ++i) {
-        Real eps = 1 - at_point_[i].volume / points.volume[i];
-        if (eps < least_void_fraction) {
-            eps = least_void_fraction;
-            ++clipped_now_;
-        }
-        void_fraction_[i] = eps;
-        bore += points.volume[i];
-        liquid += points.volume[i] * eps;
-    }
-    for (const Real volume : volume_) solids += volume;
-    liquid_volume_error_ = liquid / (bore - solids) - 1;
+void Exchange::spread(std::span<const Real> drag, std::span<const Vec3> velocity) {
+    load_.resize(points_.position.size());
+    parallel_for(load_.size(), threads_, [&](std::size_t i) { load_[i] = {}; });
+    footprints_.spread(threads_, [&](std::size_t p) {
+        const Vec3 flux = volume_[p] * velocity[p], force = drag[p] * velocity[p];
+        footprints_.each(p, [&](Index i, Real w) {
+            mps::LoadAt& at = load_[i];
+            at.void_fraction += w * volume_[p];
+            at.drag += w * drag[p];
+            at.solids_flux += w * flux;
+            at.drag_of_solids += w * force;
+        });
+    });
 }
 
 Response Exchange::response(std::span<const Real> drag, std::span<const Vec3> velocity) {
     require(!given_, "Exchange: begin comes before response");
     require(drag.size() == volume_.size() && velocity.size() == volume_.size(),
             "Exchange: drag and velocity must have one row per solid");
-    std::vector<AtPoint>& at = at_point_;
-    for (std::size_t p = 0; p < drag.size(); ++p)
-        footprints_.each(p, [&](Index i, Real) { at[i] = {}; });
-    for (std::size_t p = 0; p < drag.size(); ++p) {
-        const Vec3 force = drag[p] * velocity[p];
-        footprints_.each(p, [&](Index i, Real w) {
-            at[i].drag += w * drag[p];
-            at[i].force += w * force;
-        });
-    }
+    spread(drag, velocity);
+    // to what drag does to the liquid at each point: its relaxation and its acceleration
+    parallel_for(load_.size(), threads_, [&](std::size_t i) {
+        mps::LoadAt& at = load_[i];
+        const Real per_mass = 1 / (density_ * points_.volume[i] * void_fraction(i).first);
+        at.drag_of_solids = per_mass * (at.drag_of_solids - at.drag * field_[i]);
+        at.drag = per_mass * at.drag;
+    });
     Response result;
-    result.relaxation.reserve(drag.size());
-    result.acceleration.reserve(drag.size());
-    for (std::size_t p = 0; p < drag.size(); ++p) {
+    result.relaxation.resize(drag.size());
+    result.acceleration.resize(drag.size());
+    parallel_for(drag.size(), threads_, [&](std::size_t p) {
         Real rate = 0;
         Vec3 by_drag;
         footprints_.each(p, [&](Index i, Real w) {
-            const Real share = w / (density_ * points_.volume[i] * void_fraction_[i]);
-            rate += share * at[i].drag;
-            by_drag += share * (at[i].force - at[i].drag * field_[i]);
+            rate += w * load_[i].drag;
+            by_drag += w * load_[i].drag_of_solids;
         });
-        result.relaxation.push_back(rate);
-        result.acceleration.push_back(acceleration_[p] + by_drag +
-                                      rate * (velocity_[p] - velocity[p]));
-    }
+        result.relaxation[p] = rate;
+        result.acceleration[p] = acceleration_[p] + by_drag + rate * (velocity_[p] - velocity[p]);
+    });
     return result;
 }
 
@@ -141,52 +132,52 @@ mps::Load Exchange::before(const mps::LiquidPoints& points, Real elapsed, Real d
         }
         position_[p] = x;
     }
-    footprints_.find(points, position_);
-    const std::size_t n = points.position.size();
-    at_point_.assign(n, {});
-    for (std::size_t p = 0; p < start_.size(); ++p) {
-        const Vec3 &v = mean_velocity_[p], flux = volume_[p] * v, force = drag_[p] * v;
-        footprints_.each(p, [&](Index i, Real w) {
-            AtPoint& at = at_point_[i];
-            at.volume += w * volume_[p];
-            at.drag += w * drag_[p];
-            at.flux += w * flux;
-            at.force += w * force;
-        });
-    }
-    find_void_fraction(points);
-    flux_.resize(n);
-    beta_.resize(n);
-    drag_of_solids_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const Real per_volume = 1 / points.volume[i];
-        beta_[i] = per_volume * at_point_[i].drag;
-        flux_[i] = per_volume * at_point_[i].flux;
-        drag_of_solids_[i] = per_volume * at_point_[i].force;
-    }
-    return {void_fraction_, flux_, beta_, drag_of_solids_};
+    footprints_.find(points, position_, threads_);
+    spread(drag_, mean_velocity_);
+    // bore, liquid and how many were raised to the floor
+    const Vec3 sums = ordered_sum<Vec3>(load_.size(), threads_, [&](std::size_t i) {
+        mps::LoadAt& at = load_[i];
+        const Real volume = points_.volume[i], per_volume = 1 / volume;
+        const auto [eps, unclipped] = void_fraction(i);
+        at.void_fraction = eps;
+        at.drag *= per_volume;
+        at.solids_flux = per_volume * at.solids_flux;
+        at.drag_of_solids = per_volume * at.drag_of_solids;
+        return Vec3{volume, volume * eps, unclipped < eps ? 1. : 0.};
+    });
+    clipped_now_ = static_cast<std::size_t>(sums.z);
+    liquid_volume_error_ = sums.y / (sums.x - total(volume_)) - 1;
+    return load_;
 }
 
 std::span<const Vec3> Exchange::owed(std::span<const Vec3> velocity) {
-    owed_.assign(velocity.size(), {});
     clipped_ += clipped_now_;
-    for (std::size_t p = 0; p < start_.size(); ++p) {
+    got_.resize(start_.size());
+    rest_.resize(start_.size());
+    parallel_for(start_.size(), threads_, [&](std::size_t p) {
         const Vec3 by_drag =
             (drag_[p] * step_) * (footprints_.sample(p, velocity) - mean_velocity_[p]);
-        const Vec3 got = free_ ? (step_ / duration_) * impulse_[p] : by_drag;
-        if (free_) {
-            const Vec3 rest = by_drag - got;
-            footprints_.each(p, [&](Index i, Real w) { owed_[i] += w * rest; });
-        }
-        received_[p] += got;
-        on_solids_ += got;
-        sizes_ += norm(got);
+        got_[p] = free_ ? (step_ / duration_) * impulse_[p] : by_drag;
+        rest_[p] = by_drag - got_[p];
+    });
+    for (std::size_t p = 0; p < start_.size(); ++p) {
+        received_[p] += got_[p];
+        on_solids_ += got_[p];
+        sizes_ += norm(got_[p]);
     }
-    for (std::size_t i = 0; i < velocity.size(); ++i) {
-        owed_[i] = (1 / points_.volume[i]) * owed_[i];
-        on_liquid_ +=
-            points_.volume[i] * (step_ * (drag_of_solids_[i] - beta_[i] * velocity[i]) + owed_[i]);
+    owed_.resize(velocity.size());
+    parallel_for(owed_.size(), threads_, [&](std::size_t i) { owed_[i] = {}; });
+    if (free_) {
+        footprints_.spread(threads_, [&](std::size_t p) {
+            footprints_.each(p, [&](Index i, Real w) { owed_[i] += w * rest_[p]; });
+        });
     }
+    on_liquid_ += ordered_sum<Vec3>(owed_.size(), threads_, [&](std::size_t i) {
+        const mps::LoadAt& at = load_[i];
+        const Vec3 owed = owed_[i];
+        owed_[i] = (1 / points_.volume[i]) * owed;
+        return owed + (points_.volume[i] * step_) * (at.drag_of_solids - at.drag * velocity[i]);
+    });
     return owed_;
 }
 

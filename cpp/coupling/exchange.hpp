@@ -2,7 +2,9 @@
 
 #include "coupling/footprints.hpp"
 
+#include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace mpsdem::coupling {
@@ -45,7 +47,7 @@ class Exchange final : public mps::Loading {
 public:
     static constexpr Real least_void_fraction = 0.3; // [-] a clip, counted
 
-    Exchange(Real smoothing_radius, Real liquid_density);
+    Exchange(Real smoothing_radius, Real liquid_density, int threads);
 
     /// Look at the liquid around the solids at the start of a step.
     void begin(const mps::LiquidPoints& points, std::span<const Vec3> velocity,
@@ -74,23 +76,23 @@ public:
     [[nodiscard]] Real liquid_volume_error() const noexcept { return liquid_volume_error_; }
 
 private:
-    /// What solids bring to a point of the liquid, in a line of the cache.
-    struct alignas(64) AtPoint {
-        Real volume = 0; // [m3]
-        Real drag = 0;   // [kg/s]
-        Vec3 flux;       // [m4/s]
-        Vec3 force;      // [N]
-    };
-
-    void find_void_fraction(const mps::LiquidPoints& points);
+    /// Sum up the load of solids with drag K [kg/s] and velocity v, times the volume of each point
+    /// [kg/s, m4/s, N]; the volume of the solids [m3] stands for the void fraction.
+    void spread(std::span<const Real> drag, std::span<const Vec3> velocity);
+    /// Void fraction of a point from the volume of solids there [m3]: with the floor, and without.
+    [[nodiscard]] std::pair<Real, Real> void_fraction(std::size_t i) const noexcept {
+        const Real eps = 1 - load_[i].void_fraction / points_.volume[i];
+        return {std::max(eps, least_void_fraction), eps};
+    }
 
     Footprints footprints_;
     Real density_; // [kg/m3] of the liquid
+    int threads_;
 
     // Of the solids.
     std::vector<Vec3> velocity_, acceleration_; // of the liquid at them, at the start
     std::vector<Real> volume_;                  // [m3]
-    std::vector<Vec3> start_, position_, mean_velocity_, impulse_, received_;
+    std::vector<Vec3> start_, position_, mean_velocity_, impulse_, received_, got_, rest_;
     std::vector<Real> drag_;
     Real duration_ = 0;
     bool given_ = true; // whether the step begun has been given
@@ -99,9 +101,8 @@ private:
     // Of the liquid's points.
     mps::LiquidPoints points_{};
     std::span<const Vec3> field_; // [m/s] the liquid's velocity at the start
-    std::vector<AtPoint> at_point_;
-    std::vector<Real> void_fraction_, beta_;
-    std::vector<Vec3> flux_, drag_of_solids_, owed_;
+    std::vector<mps::LoadAt> load_;
+    std::vector<Vec3> owed_;
     Real step_ = 0; // [s] of the substep under way
     std::size_t clipped_now_ = 0, clipped_ = 0;
     Real liquid_volume_error_ = 0;

@@ -2,7 +2,9 @@
 
 #include "core/check.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace mpsdem::coupling {
 
@@ -12,7 +14,8 @@ constexpr Lanes counting{0, 1, 2, 3};
 
 } // namespace
 
-void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> position) {
+void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> position,
+                      int threads) {
     require(points.position.size() == points.volume.size() && !points.position.empty(),
             "Footprints: a liquid needs a volume for each of its points");
     const Real reach = kernel_.radius, period = points.period;
@@ -21,18 +24,34 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
     const bool sorted = points.fixed && sorted_from_ == points.position.data() &&
                         order_.size() == points.position.size() && period == period_;
     if (sorted && std::ranges::equal(found_for_, position)) return;
-    if (!sorted) sort(points);
+    if (!sorted) sort(points, threads);
     found_for_.clear();
+    groups_.resize((position.size() + group_size - 1) / group_size);
+    parallel_for_blocks(groups_.size(), threads, [&](std::size_t g) { find_group(g, position); });
+    for (std::size_t p = 0; p < position.size(); ++p) {
+        const auto& first = groups_[p / group_size].first;
+        require(first[p % group_size + 1] > first[p % group_size],
+                "Footprints: a solid has no liquid within the smoothing radius: raise it, or make "
+                "the liquid finer");
+    }
+    cut(position);
+    found_for_.assign(position.begin(), position.end());
+}
 
-    first_.assign(1, 0);
+void Footprints::find_group(std::size_t g, std::span<const Vec3> position) {
+    const Real reach = kernel_.radius;
+    Group& group = groups_[g];
+    const std::size_t begin_solid = g * group_size;
+    const std::size_t count = std::min(group_size, position.size() - begin_solid);
     std::size_t found = 0;
-    for (const Vec3& x : position) {
+    for (std::size_t s = 0; s < count; ++s) {
+        const Vec3& x = position[begin_solid + s];
         Lanes totals{};
         grid_.around(cells_.of(x), [&](Index begin, Index end, int image) {
-            const Vector<Lanes> seen = broadcast(Vec3{x.x + image * period, x.y, x.z});
-            if (point_.size() < found + (end - begin)) {
-                point_.resize(2 * found + (end - begin));
-                weight_.resize(point_.size());
+            const Vector<Lanes> seen = broadcast(Vec3{x.x + image * period_, x.y, x.z});
+            if (group.point.size() < found + (end - begin)) {
+                group.point.resize(2 * found + (end - begin));
+                group.weight.resize(group.point.size());
             }
             for (Index k = begin; k < end; k += lane_count) {
                 const Columns at = turned(row_[k], row_[k + 1], row_[k + 2], row_[k + 3]);
@@ -46,28 +65,54 @@ void Footprints::find(const mps::LiquidPoints& points, std::span<const Vec3> pos
                 totals += weight;
                 for (; hits != 0; hits &= hits - 1) {
                     const auto lane = static_cast<std::size_t>(std::countr_zero(hits));
-                    point_[found] = order_[k + lane];
-                    weight_[found] = weight[lane];
+                    group.point[found] = order_[k + lane];
+                    group.weight[found] = weight[lane];
                     ++found;
                 }
             }
         });
         const Real total = sum(totals);
-        require(total > 0, "Footprints: a solid has no liquid within the smoothing radius: raise "
-                           "it, or make the liquid finer");
-        for (std::size_t k = first_.back(); k < found; ++k) weight_[k] /= total;
-        first_.push_back(found);
+        if (!(total > 0)) found = group.first[s]; // no liquid here
+        for (std::size_t k = group.first[s]; k < found; ++k) group.weight[k] /= total;
+        group.first[s + 1] = found;
     }
-    found_for_.assign(position.begin(), position.end());
 }
 
-void Footprints::sort(const mps::LiquidPoints& points) {
+void Footprints::cut(std::span<const Vec3> position) {
+    Real begin = 0, length = period_;
+    if (period_ == 0 && !position.empty()) {
+        const auto [least, most] = std::ranges::minmax(position, {}, &Vec3::x);
+        begin = least.x;
+        length = most.x - least.x;
+    }
+    constexpr Real most_slabs = 4096;
+    const Real fit = std::min(most_slabs, std::floor(length / (2 * kernel_.radius)));
+    // an even number, as the last slab borders on the first
+    const auto slabs = std::max<std::size_t>(1, 2 * static_cast<std::size_t>(fit / 2));
+    const Real per_length = static_cast<Real>(slabs) / std::max(length, 2 * kernel_.radius);
+    slab_first_.assign(slabs + 1, 0);
+    slab_of_.resize(position.size());
+    by_slab_.resize(position.size());
+    for (std::size_t p = 0; p < position.size(); ++p) {
+        const auto slab = static_cast<std::size_t>((position[p].x - begin) * per_length);
+        slab_of_[p] = static_cast<Index>(std::min(slab, slabs - 1));
+        ++slab_first_[slab_of_[p] + 1];
+    }
+    for (std::size_t s = 0; s < slabs; ++s) slab_first_[s + 1] += slab_first_[s];
+    for (std::size_t p = position.size(); p-- > 0;)
+        by_slab_[--slab_first_[slab_of_[p] + 1]] = static_cast<Index>(p);
+    // Each entry now stands at its slab's beginning: move them back to their places.
+    for (std::size_t s = 0; s < slabs; ++s) slab_first_[s] = slab_first_[s + 1];
+    slab_first_[slabs] = position.size();
+}
+
+void Footprints::sort(const mps::LiquidPoints& points, int threads) {
     const Real reach = kernel_.radius;
     if (points.period != period_) grid_ = neighbors::CellGrid(reach, points.period);
     period_ = points.period;
     sorted_from_ = points.position.data();
-    cells_ = neighbors::Cells(points.position, reach, points.period, 1);
-    grid_.sort(points.position, cells_, order_, 1);
+    cells_ = neighbors::Cells(points.position, reach, points.period, threads);
+    grid_.sort(points.position, cells_, order_, threads);
     row_.assign(order_.size() + lane_count, Lanes{});
     for (std::size_t k = 0; k < order_.size(); ++k) {
         const Vec3& x = points.position[order_[k]];

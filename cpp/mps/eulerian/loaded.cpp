@@ -21,6 +21,11 @@ void store(VectorField& f, std::size_t i, std::size_t k, const Vector<Lanes>& v)
     mpsdem::store(f.z[i] + k, v.z);
 }
 
+/// Four vectors in a row.
+void store(std::vector<Vec3>& to, std::size_t first, const Vector<Lanes>& v) noexcept {
+    for (std::size_t l = 0; l < lane_count; ++l) to[first + l] = {v.x[l], v.y[l], v.z[l]};
+}
+
 Vec3 at(const VectorField& f, std::size_t i, std::size_t k) noexcept {
     return {f.x[i][k], f.y[i][k], f.z[i][k]};
 }
@@ -97,11 +102,11 @@ void Liquid::take_load(const Load& load, Loaded& on) const {
     const std::size_t inner = section_.interior_count(), n = stations();
     parallel_for(inner, numerics_.threads, [&](std::size_t i) {
         for (std::size_t k = 0; k < n; ++k) {
-            const std::size_t p = i * n + k;
-            on.eps[i][k] = load.void_fraction[p];
-            on.beta[i][k] = load.drag[p] / density_;
-            set(on.flux, i, k, load.solids_flux[p]);
-            set(on.drag, i, k, (1 / density_) * load.drag_of_solids[p]);
+            const LoadAt& at = load[i * n + k];
+            on.eps[i][k] = at.void_fraction;
+            on.beta[i][k] = at.drag / density_;
+            set(on.flux, i, k, at.solids_flux);
+            set(on.drag, i, k, (1 / density_) * at.drag_of_solids);
         }
     });
     parallel_for(section_.wall_count(), numerics_.threads, [&](std::size_t w) {
@@ -140,7 +145,6 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
     take_load(loading.before(points(), elapsed, dt), on);
     const Real before = interior_momentum(on);
     if (first) carried_to = before;
-    (void)interior_velocity();
     const std::size_t inner = section_.interior_count();
     if (drive_.pressure_gradient) on.gradient = *drive_.pressure_gradient / density_;
 
@@ -160,6 +164,9 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
     const Real misplaced = dt * extrapolated(mean(convection_) / interior_area_, on.error_before) +
                            before - carried_to;
 
+    // What the solids get is the drag on the velocity before its pressure is known.
+    on.velocity.resize(inner * stations());
+    interior_velocity_.resize(inner * stations());
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
         const std::size_t begin = chunks_.begin(c), end = chunks_.end(c);
         for (std::size_t i = 0; i < section_.size(); ++i) {
@@ -188,7 +195,10 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
                     eps * (u + (dt + Lanes{}) * (now + (ahead + Lanes{}) * (now - earlier)));
                 m.x -= misplaced;
                 m = damped * (m + (dt + Lanes{}) * push);
-                store(u_, i, k, (1 / eps) * m);
+                const Vector<Lanes> next = (1 / eps) * m;
+                store(u_, i, k, next);
+                store(on.velocity, i * stations() + k, u);
+                store(interior_velocity_, i * stations() + k, next);
                 store(star_, i, k, m + s);
             }
             star_.x.wrap(i, begin, end);
@@ -206,9 +216,6 @@ void Liquid::step_with_solids(Real dt, Loading& loading, Real elapsed, Real shar
     });
     solver_.solve(linear::CrossSectionSolver::WallSource::given, numerics_.threads, phi_);
 
-    // What the solids get is the drag on the velocity before its pressure is known.
-    on.velocity.assign(interior_velocity_.begin(), interior_velocity_.end());
-    (void)interior_velocity();
     const std::span<const Vec3> owed = loading.owed(interior_velocity_);
     const Real held = correct_with_solids(on, dt) / dt;
     const Real exchanged = settle_with_solids(on, dt, owed);

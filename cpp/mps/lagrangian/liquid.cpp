@@ -254,7 +254,7 @@ AdvanceReport Liquid::advance(Real dt, Loading* loading) {
         report.unexplained += unexplained_ * length / dt;
         report.convection_error += convection_error_ * length / dt;
     }
-    load_ = {};  // its spans are the solids'
+    load_ = {};  // it is the solids'
     bend_to(dt); // to the last bit, where the next advance begins
     return report;
 }
@@ -321,7 +321,7 @@ bool Liquid::step(Real dt, AdvanceReport& report, Loading* loading, Real elapsed
 bool Liquid::outruns(Real dt) const {
     Real square = 0;
     for (std::size_t i = 0; i < liquid_count_; ++i) {
-        const Vec3 flux = load_.void_fraction[i] * velocity_[i] + load_.solids_flux[i];
+        const Vec3 flux = load_[i].void_fraction * velocity_[i] + load_[i].solids_flux;
         const Vec3 past = velocity_[i] - flux, gone = from_wall(i, flux);
         square = std::max({square, dot(gone, gone), 4 * dot(past, past)});
     }
@@ -331,14 +331,14 @@ bool Liquid::outruns(Real dt) const {
 
 /// Share of the liquid at a particle, of the load where there is one [-].
 Real Liquid::liquid_share(std::size_t i) const noexcept {
-    if (loaded()) return load_.void_fraction[i];
+    if (loaded()) return load_[i].void_fraction;
     return eps_.empty() ? 1 : eps_[i];
 }
 
 /// Axial flux of the load under way, or of none, with the velocity of the substep's start [m/s].
 Real Liquid::flux_before(std::size_t i) const noexcept {
     const Real u = velocity_before_[i].x;
-    return loaded() ? load_.void_fraction[i] * u + load_.solids_flux[i].x : u;
+    return loaded() ? load_[i].void_fraction * u + load_[i].solids_flux.x : u;
 }
 
 /// Mean of eps u_x in the bore [m/s].
@@ -375,12 +375,12 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
     acceleration_.resize(liquid_count_);
     if (turbulent()) {
         find_eddy_viscosity(dt, report);
-        parallel_for(load_.void_fraction.size(), threads,
-                     [&](std::size_t i) { eddy_viscosity_[i] *= load_.void_fraction[i]; });
+        parallel_for(load_.size(), threads,
+                     [&](std::size_t i) { eddy_viscosity_[i] *= load_[i].void_fraction; });
         viscous_acceleration(reference_, pairs_, eddy_viscosity_, velocity_, threads,
                              acceleration_);
-        parallel_for(load_.void_fraction.size(), threads, [&](std::size_t i) {
-            acceleration_[i] = (1 / load_.void_fraction[i]) * acceleration_[i];
+        parallel_for(load_.size(), threads, [&](std::size_t i) {
+            acceleration_[i] = (1 / load_[i].void_fraction) * acceleration_[i];
         });
         add_wall_shear();
     } else {
@@ -404,14 +404,15 @@ void Liquid::predict(Real dt, AdvanceReport& report) {
 /// What the liquid brings along that passes its particles; returns by how much that changed the
 /// mean of eps u_x in the bore, which it should not [m/s].
 Real Liquid::add_relative_convection(Real dt) {
-    const Load& load = load_;
+    const Load load = load_;
     const int threads = numerics_.threads;
     shift_.resize(liquid_count_);
+    scalar_.resize(liquid_count_);
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
-        const Real eps = load.void_fraction[i];
-        shift_[i] = eps * ((1 - eps) * velocity_before_[i] - load.solids_flux[i]); // eps (u - w)
+        const Real eps = scalar_[i] = load[i].void_fraction;
+        shift_[i] = eps * ((1 - eps) * velocity_before_[i] - load[i].solids_flux); // eps (u - w)
     });
-    relative_convection(reference_, pairs_, shift_, load.void_fraction, velocity_before_, threads,
+    relative_convection(reference_, pairs_, shift_, scalar_, velocity_before_, threads,
                         acceleration_);
     parallel_for(liquid_count_, threads,
                  [&](std::size_t i) { velocity_[i] += dt * acceleration_[i]; });
@@ -421,15 +422,15 @@ Real Liquid::add_relative_convection(Real dt) {
 /// From the liquid's velocity to the volume flux, with the drag of the solids in it; the list
 /// becomes the matrix of the damped pressure.
 void Liquid::take_load(Real dt, Real brought) {
-    const Load& load = load_;
+    const Load load = load_;
     const int threads = numerics_.threads;
     damping_.assign(pairs_.rows(), 1);
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
-        const Real eps = load.void_fraction[i];
-        damping_[i] = 1 / (1 + dt * load.drag[i] / (density_ * eps));
+        const Real eps = load[i].void_fraction;
+        damping_[i] = 1 / (1 + dt * load[i].drag / (density_ * eps));
         const Vec3 momentum = eps * velocity_[i] - Vec3{brought, 0, 0};
-        velocity_[i] = damping_[i] * (momentum + (dt / density_) * load.drag_of_solids[i]) +
-                       load.solids_flux[i];
+        velocity_[i] = damping_[i] * (momentum + (dt / density_) * load[i].drag_of_solids) +
+                       load[i].solids_flux;
     });
     // A wall's share in the pressure is damped as the liquid's before it.
     parallel_for(wall_count_, threads, [&](std::size_t w) {
@@ -478,16 +479,17 @@ void Liquid::hold_sections(Real dt, const AxialBins& before) {
 
 /// From the volume flux back to the liquid's velocity; what the solids still owe is paid.
 void Liquid::leave_load(Real dt, Loading& loading) {
-    const Load& load = load_;
+    const Load load = load_;
     const int threads = numerics_.threads;
     volume_flux_.resize(liquid_count_);
     acceleration_of_last_.resize(liquid_count_);
-    eps_.assign(load.void_fraction.begin(), load.void_fraction.end());
+    eps_.resize(liquid_count_);
     parallel_for(liquid_count_, threads, [&](std::size_t i) {
+        eps_[i] = load[i].void_fraction;
         volume_flux_[i] = velocity_[i];
-        velocity_[i] = (1 / eps_[i]) * (velocity_[i] - load.solids_flux[i]);
+        velocity_[i] = (1 / eps_[i]) * (velocity_[i] - load[i].solids_flux);
         const Vec3 drag =
-            (1 / (density_ * eps_[i])) * (load.drag_of_solids[i] - load.drag[i] * velocity_[i]);
+            (1 / (density_ * eps_[i])) * (load[i].drag_of_solids - load[i].drag * velocity_[i]);
         acceleration_of_last_[i] = (1 / dt) * (velocity_[i] - velocity_before_[i]) - drag;
     });
     const std::span<const Vec3> owed = loading.owed(liquid_velocity());

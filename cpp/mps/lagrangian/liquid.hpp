@@ -238,7 +238,7 @@ private:
     void hold_bulk_velocity(Real dt);
     void hold_flux_of_plate(Real dt, const AxialBins& before);
     void move(Real dt, AdvanceReport& report, Real elapsed);
-    [[nodiscard]] bool loaded() const noexcept { return !load_.void_fraction.empty(); }
+    [[nodiscard]] bool loaded() const noexcept { return !load_.empty(); }
     [[nodiscard]] Real liquid_share(std::size_t i) const noexcept;
     [[nodiscard]] bool outruns(Real dt) const;
     [[nodiscard]] Real mean_momentum() const;

@@ -264,12 +264,14 @@ class Exchange:
         Over which a solid acts on the liquid, and samples it [m].
     liquid_density : float
         [kg/m3].
+    threads : int
+        The result does not depend on it.
     
     References
     ----------
     Zhou, Kuang, Chu & Yu (2010) doi:10.1017/S002211201000306X, set II.
     """
-    def __init__(self, *, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex, liquid_density: typing.SupportsFloat | typing.SupportsIndex) -> None:
+    def __init__(self, *, smoothing_radius: typing.SupportsFloat | typing.SupportsIndex, liquid_density: typing.SupportsFloat | typing.SupportsIndex, threads: typing.SupportsInt | typing.SupportsIndex = 1) -> None:
         ...
     @typing.overload
     def advance(self, liquid: mpsdem._core.mps.LagrangianLiquid, dt: typing.SupportsFloat | typing.SupportsIndex) -> mpsdem._core.mps.LiquidReport:

@@ -81,6 +81,7 @@ def build_state(case: Case, plan: Plan) -> State:
         exchange = coupling.Exchange(
             smoothing_radius=plan.smoothing_radius,
             liquid_density=case.liquid.density,
+            threads=plan.threads,
         )
     return State(
         population=population,
