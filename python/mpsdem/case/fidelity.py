@@ -9,6 +9,9 @@ from mpsdem.case.units import Quantity, Whole
 
 # Restitution stays within 0.001 at 0.1; bulk flow does not move up to 0.5.
 _RAYLEIGH_FRACTION = {"quick": 0.2, "balanced": 0.1, "fine": 0.05}
+# Twice 0.1 moves settling by less than 0.01 % and a sliding bed by less than chance
+# (docs/trade.md).
+_COUPLING_FRACTION = {"quick": 0.2, "balanced": 0.1, "fine": 0.1}
 _SPACINGS_ACROSS = {"quick": 10, "balanced": 16, "fine": 24}
 
 
@@ -26,7 +29,8 @@ class Fidelity(Part):
     liquid_step : float, optional
         Longest time step of a computed liquid [s]; Courant number and viscosity may shorten it.
     coupling_step : float, optional
-        Time between two exchanges with the liquid [s].
+        Time between two exchanges with the liquid [s]; by default 0.2 (quick) or 0.1 of the times
+        over which the forces on a solid change.
     stiffness_factor : float
         Multiplies every modulus and stiffness [-]; less than 1 buys larger steps with overlap.
     smoothing_radius : float, optional
@@ -96,6 +100,11 @@ class Fidelity(Part):
         if self.rayleigh_fraction is not None:
             return self.rayleigh_fraction
         return _RAYLEIGH_FRACTION[self.level]
+
+    @property
+    def coupling_fraction(self) -> float:
+        """Share of the times over which the forces on a solid change, between two exchanges [-]."""
+        return _COUPLING_FRACTION[self.level]
 
     def resolved_particle_spacing(self, pipe_radius: float) -> float:
         """Distance between the particles of a computed liquid in a bore of that radius [m]."""

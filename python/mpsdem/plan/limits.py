@@ -41,10 +41,10 @@ _VISCOUS_SHARE = 0.1  # [-] of spacing^2 / viscosity, as the liquid's own step t
 # liquid and what its pressure then does to it swing against each other
 _RESPONSE_SHARE = 0.8
 _PERIOD_SHARE = 0.05  # [-] of a period of the pipe, that a liquid which notices it may step over
-_COUPLING_SHARE = 0.1  # [-] of the times over which the forces on a solid change
-# A period of the pipe's motion is worth that much of such a time: a hundred steps follow it, and
-# less than twenty are refused.
+# A period of the pipe's motion is worth that much of a time over which forces change: a hundred
+# steps follow it, and less than twenty are refused.
 _PERIOD_WORTH = 0.1
+_SHARE_OF_PERIOD = 0.1  # [-] of what it is worth, at any level
 SOLID_RATE = 2e7  # solids x steps per second on one thread in a dense bed; in the open 1.4e8
 
 
@@ -58,11 +58,15 @@ class Limit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Scale:
-    """A time [s] that a step has to resolve, and how much of it counts [-]."""
+    """A time [s] that a step has to resolve, and how much of it counts [-].
+
+    ``share`` [-] of that is what a step takes; by default what its level sets.
+    """
 
     name: str
     time: float
     worth: float = 1.0
+    share: float | None = None
 
     @property
     def limit(self) -> float:
@@ -155,9 +159,10 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
             scales.append(_Scale(name=crossing, time=diameter / slip))
     if math.isfinite(period := case.motion.shortest_period):
         name = f"the pipe's shortest period of motion, {period:.3g} s"
-        scales.append(_Scale(name=name, time=period, worth=_PERIOD_WORTH))
+        scales.append(_Scale(name=name, time=period, worth=_PERIOD_WORTH, share=_SHARE_OF_PERIOD))
     given = case.fidelity.coupling_step
-    limits = _limits("coupling_step", given=given, share=_COUPLING_SHARE, scales=scales)
+    share = case.fidelity.coupling_fraction
+    limits = _limits("coupling_step", given=given, share=share, scales=scales)
     return (*limits, every, prompt)
 
 
@@ -216,9 +221,10 @@ def _limits(
 ) -> tuple[Limit, ...]:
     """Limit a step to a share of each time, or to what is given where that is not too long."""
     if given is None:
+        shares = [(scale, scale.share or share) for scale in scales]
         return tuple(
-            Limit(name=f"{share * scale.worth:.3g} of {scale.name}", value=share * scale.limit)
-            for scale in scales
+            Limit(name=f"{part * scale.worth:.3g} of {scale.name}", value=part * scale.limit)
+            for scale, part in shares
         )
     shortest = min(scales, key=lambda scale: scale.limit, default=None)
     if shortest is not None and given > (longest := _LARGEST_SHARE * shortest.limit):
