@@ -439,7 +439,7 @@ def test_a_distribution_is_taken_as_a_part_too(case):
     assert (changed.solids.smallest_diameter, changed.solids.largest_diameter) == (0.01, 0.02)
 
 
-@pytest.mark.parametrize(("level", "fraction"), [("quick", 0.2), ("balanced", 0.1), ("fine", 0.05)])
+@pytest.mark.parametrize(("level", "fraction"), [("quick", 0.3), ("balanced", 0.1), ("fine", 0.05)])
 def test_a_level_sets_the_step_unless_it_is_given(case, level, fraction):
     leveled = case.with_(fidelity={"level": level})
     assert leveled.fidelity.resolved_rayleigh_fraction == fraction

@@ -29,7 +29,7 @@ def names(stages):
     return [stage.name for stage in stages]
 
 
-@pytest.mark.parametrize(("level", "fraction"), [("quick", 0.2), ("balanced", 0.1), ("fine", 0.05)])
+@pytest.mark.parametrize(("level", "fraction"), [("quick", 0.3), ("balanced", 0.1), ("fine", 0.05)])
 def test_the_solids_take_the_level_s_share_of_the_rayleigh_time(level, fraction):
     plan = make_plan(case(fidelity={"level": level}))
     assert plan.solid_step.binding.value == pytest.approx(fraction * RAYLEIGH_TIME, rel=2e-3)

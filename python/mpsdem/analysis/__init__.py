@@ -35,6 +35,10 @@ from mpsdem.analysis.front import (
     Extent,
     extent,
 )
+from mpsdem.analysis.ledgers import (
+    Ledgers,
+    ledgers,
+)
 from mpsdem.analysis.partial_volumes import (
     cell_area,
     cell_volume,
@@ -90,6 +94,7 @@ __all__ = [
     "Density",
     "Extent",
     "FlowRegime",
+    "Ledgers",
     "Periods",
     "Plug",
     "Profile",
@@ -112,6 +117,7 @@ __all__ = [
     "in_bed",
     "insitu_concentration",
     "laminar_profile",
+    "ledgers",
     "longest",
     "period_of_motion",
     "radial_velocity",

@@ -4,6 +4,7 @@ from mpsdem.plot.curves import positions_over_time, pressure_gradient_over_time
 from mpsdem.plot.figures import save_figures, save_report
 from mpsdem.plot.head_loss import draw_head_loss
 from mpsdem.plot.histories import along_the_pipe, transport_history
+from mpsdem.plot.ledgers import ledger_history
 from mpsdem.plot.liquid_curves import (
     liquid_velocity_profile,
     pressure_along_axis,
@@ -18,6 +19,7 @@ __all__ = [
     "along_the_pipe",
     "cross_sections",
     "draw_head_loss",
+    "ledger_history",
     "liquid_middle_plane",
     "liquid_sections",
     "liquid_velocity_profile",

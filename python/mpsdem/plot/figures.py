@@ -13,6 +13,7 @@ from mpsdem.analysis.head_loss import comparable
 from mpsdem.plot.curves import positions_over_time, pressure_gradient_over_time
 from mpsdem.plot.head_loss import draw_head_loss
 from mpsdem.plot.histories import along_the_pipe, transport_history
+from mpsdem.plot.ledgers import ledger_history
 from mpsdem.plot.liquid_curves import (
     liquid_velocity_profile,
     pressure_along_axis,
@@ -116,3 +117,5 @@ def _drawings(
         yield "liquid_profile", lambda: liquid_velocity_profile(results, times)
         yield "liquid_pressure", lambda: pressure_along_axis(results, times)
         yield "liquid_solver", lambda: solver_history(results)
+        if len(results.time) > 2:
+            yield "ledgers", lambda: ledger_history(results)

@@ -14,7 +14,8 @@ LEVELS = ("quick", "balanced", "fine")
 AS_GIVEN = "as given"
 # Spacings across the bore between those of the levels, 10, 16 and 24.
 _BETWEEN = (8, 12, 20)
-_BY_LEVEL = ("particle_spacing", "rayleigh_fraction", "solid_step")  # what a level sets
+# What a level sets.
+_BY_LEVEL = ("particle_spacing", "rayleigh_fraction", "solid_step", "coupling_step")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,6 +152,12 @@ def _turns_of_solids(plan: Plan) -> Iterator[tuple[str, str, float, dict[str, An
             softer = fidelity.stiffness_factor * factor
             changes = {"fidelity": {"stiffness_factor": softer}}
             yield "stiffness factor", f"{softer:g}", softer, changes
+        if fidelity.solid_step is None:
+            for factor in (0.5, 2.0, 3.0, 5.0):
+                share = round(fidelity.resolved_rayleigh_fraction * factor, 6)
+                changes = {"fidelity": {"rayleigh_fraction": share}}
+                if share <= 0.5:
+                    yield "Rayleigh fraction", f"{share:g}", share, changes
     if case.liquid is None:
         return
     if not case.solids.held:
