@@ -4,6 +4,7 @@
 #include "core/field.hpp"
 #include "core/ordered_sum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -53,34 +54,45 @@ void Exchange::begin(const mps::LiquidPoints& points, std::span<const Vec3> velo
         velocity_[p] = footprints_.sample(p, velocity);
         if (!acceleration.empty()) acceleration_[p] = footprints_.sample(p, acceleration);
     });
+    find_touched();
 }
 
-void Exchange::spread(std::span<const Real> drag, std::span<const Vec3> velocity) {
-    load_.resize(points_.position.size());
-    parallel_for(load_.size(), threads_, [&](std::size_t i) { load_[i] = {}; });
+/// The points that solids act on, and what an impulse there does to the liquid.
+void Exchange::find_touched() {
+    per_mass_.resize(points_.position.size());
+    load_.resize(per_mass_.size());
+    parallel_for(per_mass_.size(), threads_, [&](std::size_t i) { per_mass_[i] = 0; });
     footprints_.spread(threads_, [&](std::size_t p) {
-        const Vec3 flux = volume_[p] * velocity[p], force = drag[p] * velocity[p];
-        footprints_.each(p, [&](Index i, Real w) {
-            mps::LoadAt& at = load_[i];
-            at.void_fraction += w * volume_[p];
-            at.drag += w * drag[p];
-            at.solids_flux += w * flux;
-            at.drag_of_solids += w * force;
-        });
+        footprints_.each(p, [&](Index i, Real w) { per_mass_[i] += w * volume_[p]; });
     });
+    touched_.clear();
+    for (std::size_t i = 0; i < per_mass_.size(); ++i) {
+        if (per_mass_[i] == 0) continue;
+        const Real volume = points_.volume[i];
+        const Real eps = std::max(1 - per_mass_[i] / volume, least_void_fraction);
+        per_mass_[i] = 1 / (density_ * volume * eps);
+        touched_.push_back(static_cast<Index>(i));
+    }
 }
 
 Response Exchange::response(std::span<const Real> drag, std::span<const Vec3> velocity) {
     require(!given_, "Exchange: begin comes before response");
     require(drag.size() == volume_.size() && velocity.size() == volume_.size(),
             "Exchange: drag and velocity must have one row per solid");
-    spread(drag, velocity);
+    parallel_for(touched_.size(), threads_, [&](std::size_t k) { load_[touched_[k]] = {}; });
+    footprints_.spread(threads_, [&](std::size_t p) {
+        const Vec3 force = drag[p] * velocity[p];
+        footprints_.each(p, [&](Index i, Real w) {
+            load_[i].drag += w * drag[p];
+            load_[i].drag_of_solids += w * force;
+        });
+    });
     // to what drag does to the liquid at each point: its relaxation and its acceleration
-    parallel_for(load_.size(), threads_, [&](std::size_t i) {
+    parallel_for(touched_.size(), threads_, [&](std::size_t k) {
+        const Index i = touched_[k];
         mps::LoadAt& at = load_[i];
-        const Real per_mass = 1 / (density_ * points_.volume[i] * void_fraction(i).first);
-        at.drag_of_solids = per_mass * (at.drag_of_solids - at.drag * field_[i]);
-        at.drag = per_mass * at.drag;
+        at.drag_of_solids = per_mass_[i] * (at.drag_of_solids - at.drag * field_[i]);
+        at.drag = per_mass_[i] * at.drag;
     });
     Response result;
     result.relaxation.resize(drag.size());
@@ -133,12 +145,25 @@ mps::Load Exchange::before(const mps::LiquidPoints& points, Real elapsed, Real d
         position_[p] = x;
     }
     footprints_.find(points, position_, threads_);
-    spread(drag_, mean_velocity_);
+    load_.resize(points.position.size());
+    parallel_for(load_.size(), threads_, [&](std::size_t i) { load_[i] = {}; });
+    // sums over solids first: the volume of solids [m3] stands for the void fraction
+    footprints_.spread(threads_, [&](std::size_t p) {
+        const Vec3 &v = mean_velocity_[p], flux = volume_[p] * v, force = drag_[p] * v;
+        footprints_.each(p, [&](Index i, Real w) {
+            mps::LoadAt& at = load_[i];
+            at.void_fraction += w * volume_[p];
+            at.drag += w * drag_[p];
+            at.solids_flux += w * flux;
+            at.drag_of_solids += w * force;
+        });
+    });
     // bore, liquid and how many were raised to the floor
     const Vec3 sums = ordered_sum<Vec3>(load_.size(), threads_, [&](std::size_t i) {
         mps::LoadAt& at = load_[i];
         const Real volume = points_.volume[i], per_volume = 1 / volume;
-        const auto [eps, unclipped] = void_fraction(i);
+        const Real unclipped = 1 - per_volume * at.void_fraction;
+        const Real eps = std::max(unclipped, least_void_fraction);
         at.void_fraction = eps;
         at.drag *= per_volume;
         at.solids_flux = per_volume * at.solids_flux;

@@ -2,9 +2,7 @@
 
 #include "coupling/footprints.hpp"
 
-#include <algorithm>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace mpsdem::coupling {
@@ -76,14 +74,7 @@ public:
     [[nodiscard]] Real liquid_volume_error() const noexcept { return liquid_volume_error_; }
 
 private:
-    /// Sum up the load of solids with drag K [kg/s] and velocity v, times the volume of each point
-    /// [kg/s, m4/s, N]; the volume of the solids [m3] stands for the void fraction.
-    void spread(std::span<const Real> drag, std::span<const Vec3> velocity);
-    /// Void fraction of a point from the volume of solids there [m3]: with the floor, and without.
-    [[nodiscard]] std::pair<Real, Real> void_fraction(std::size_t i) const noexcept {
-        const Real eps = 1 - load_[i].void_fraction / points_.volume[i];
-        return {std::max(eps, least_void_fraction), eps};
-    }
+    void find_touched();
 
     Footprints footprints_;
     Real density_; // [kg/m3] of the liquid
@@ -101,6 +92,8 @@ private:
     // Of the liquid's points.
     mps::LiquidPoints points_{};
     std::span<const Vec3> field_; // [m/s] the liquid's velocity at the start
+    std::vector<Index> touched_;  // that solids act on, when the step begins
+    std::vector<Real> per_mass_;  // [1/kg] of the liquid of those
     std::vector<mps::LoadAt> load_;
     std::vector<Vec3> owed_;
     Real step_ = 0; // [s] of the substep under way
