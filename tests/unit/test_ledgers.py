@@ -16,7 +16,10 @@ TIME = np.array([0.0, 1.0, 1.5, 3.0, 4.0])  # [s] intervals differ
 
 def recorded(**numbers):
     values = {"pressure_gradient_friction": 40.0, "power_input": 2.0, "dissipation": 2.0} | numbers
-    diagnostics = {name: np.broadcast_to(value, TIME.shape) for name, value in values.items()}
+    diagnostics = {
+        name: np.broadcast_to(value, TIME.shape) if np.ndim(value) < 2 else value
+        for name, value in values.items()
+    }
     return SimpleNamespace(time=TIME, diagnostics=diagnostics, case=CASE, directory=Path("run"))
 
 
@@ -35,6 +38,7 @@ def test_errors_are_the_largest_so_far():
             liquid_unexplained=0.0,
             liquid_volume_error=[0.0, 1e-15, -3e-15, 1e-16, 2e-15],
             exchange_error=[0.0, 2e-15, 0.0, 5e-15, 0.0],
+            drag_force=np.zeros((5, 3)),
         )
     )
     assert kept.volume_error.tolist() == [1e-15, 3e-15, 3e-15, 3e-15]
@@ -60,11 +64,18 @@ def test_a_liquid_that_is_not_computed_has_no_ledger(tmp_path):
         ledgers(Results(write_run(tmp_path, CLEAR, TIMES)))
 
 
-def test_two_frames_are_no_ledger():
+def test_a_run_without_the_frame_has_no_ledger():
     short = recorded(liquid_unexplained=0.0)
-    short.time = TIME[:2]
-    with pytest.raises(ResultsError, match="less than three frames"):
+    short.time = TIME[:1]
+    with pytest.raises(ResultsError, match="has no frame 1"):
         ledgers(short)
+
+
+def test_what_solids_give_counts_whatever_its_direction():
+    force = np.outer([9.0, 9.0, 2.0, -2.0, 2.0], [0.6, 0.0, 0.8])
+    kept = ledgers(recorded(liquid_unexplained=0.0, exchange_error=0.0, drag_force=force))
+    volume = CASE.pipe.bore_volume
+    assert kept.exchanged * volume == pytest.approx([0.0, 1.0, 4.0, 6.0])
 
 
 def test_the_figure_shows_what_was_given_back_only_where_something_was():

@@ -14,9 +14,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ledgers:
-    """Mass, momentum and energy of a run with a computed liquid, since its second frame.
-
-    In the first interval solids come into the liquid, which makes room for them.
+    """Mass, momentum and energy of a run with a computed liquid, from one of its frames on.
 
     Parameters
     ----------
@@ -29,6 +27,9 @@ class Ledgers:
     given_back : (n,) float64 ndarray
         What its convection between solids lost, and was given back, likewise [Pa s/m]; 0 where none
         is recorded.
+    exchanged : (n,) float64 ndarray
+        Impulse between liquid and solids, whatever its direction, over the bore's volume [Pa s/m];
+        0 where the liquid feels none.
     put_in, dissipated : (n,) float64 ndarray
         Energy put in, and that of it which is neither motion, contact nor height [J/m]; the rest is
         stored.
@@ -41,6 +42,7 @@ class Ledgers:
     friction: FloatArray
     unexplained: FloatArray
     given_back: FloatArray
+    exchanged: FloatArray
     put_in: FloatArray
     dissipated: FloatArray
     volume_error: FloatArray
@@ -52,36 +54,40 @@ class Ledgers:
         return self.put_in - self.dissipated
 
 
-def ledgers(results: Results) -> Ledgers:
+def ledgers(results: Results, *, first: int = 1) -> Ledgers:
     """Add up the ledgers of a run.
 
     Parameters
     ----------
     results : Results
-        A run with a computed liquid, of three frames and more.
+        A run with a computed liquid.
+    first : int
+        Frame from which they are kept: by default the second, as in the first interval a liquid
+        makes room for the solids that come into it.
 
     Raises
     ------
     ResultsError
-        If its liquid is not computed, or it is too short.
+        If its liquid is not computed, or it has no such frame.
     """
     recorded = results.diagnostics
     if "pressure_gradient_friction" not in recorded:
         raise ResultsError(f"the run in {results.directory} has no liquid that is computed")
-    if len(results.time) < 3:
-        raise ResultsError(f"the run in {results.directory} has less than three frames")
-    time = results.time[1:]
+    if len(results.time) <= first:
+        raise ResultsError(f"the run in {results.directory} has no frame {first}")
+    time = results.time[first:]
     interval = np.diff(time)
 
+    def added(values: FloatArray) -> FloatArray:
+        return np.concatenate([[0.0], np.cumsum(values[first + 1 :] * interval)])
+
     def sums(name: str) -> FloatArray:
-        if name not in recorded:
-            return np.zeros_like(time)
-        return np.concatenate([[0.0], np.cumsum(recorded[name][2:] * interval)])
+        return added(recorded[name]) if name in recorded else np.zeros_like(time)
 
     def most(name: str) -> FloatArray:
         if name not in recorded:
             return np.zeros_like(time)
-        return np.maximum.accumulate(np.abs(recorded[name][1:]))
+        return np.maximum.accumulate(np.abs(recorded[name][first:]))
 
     friction = sums("pressure_gradient_friction")
     if "pressure_iterations" not in recorded:
@@ -89,14 +95,19 @@ def ledgers(results: Results) -> Ledgers:
         unexplained = sums("liquid_unexplained")
     else:
         assert results.case.liquid is not None
-        flux = recorded["liquid_flux"][1:]
+        flux = recorded["liquid_flux"][first:]
         given = sums("pressure_gradient") - sums("pressure_gradient_solids")
         unexplained = results.case.liquid.density * (flux - flux[0]) - given + friction
+    exchanged = np.zeros_like(time)
+    if "exchange_error" in recorded:
+        force = np.linalg.norm(recorded["drag_force"], axis=-1)
+        exchanged = added(force) / results.case.pipe.bore_volume
     return Ledgers(
         time=time,
         friction=friction,
         unexplained=unexplained,
         given_back=sums("convection_error"),
+        exchanged=exchanged,
         put_in=sums("power_input") + sums("shaking_power"),
         dissipated=sums("dissipation"),
         volume_error=most("liquid_volume_error"),

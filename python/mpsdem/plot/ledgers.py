@@ -33,7 +33,7 @@ def ledger_history(results: Results) -> Figure:
     Raises
     ------
     ResultsError
-        If its liquid is not computed, or it has less than three frames.
+        If its liquid is not computed, or it has less than two frames.
     """
     kept = ledgers(results)
     with style():

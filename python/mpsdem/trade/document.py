@@ -30,7 +30,7 @@ def _lines(table: Table) -> Iterator[str]:
     yield ""
     yield "Written by `python -m mpsdem.trade.document docs` from the table that the package"
     yield "ships, `python/mpsdem/trade/table.json`; `python -m mpsdem.trade.measure` measures that"
-    yield "again, in about ten minutes of computing. `mpsdem trade CASE` does it for your case."
+    yield "again, in about twenty minutes of computing. `mpsdem trade CASE` does it for your case."
     yield ""
     solids, liquid = 1e3 * table.machine.solids, 1e3 * table.machine.liquid
     yield "Costs are seconds of computing each simulated second, on one thread of a machine that"

@@ -2,7 +2,7 @@
 
 usage: python -m mpsdem.trade.measure [--scratch DIR] [--table FILE] [SCENE]...
 
-About ten minutes of computing on one core. What was measured before, in DIR, is not run again;
+About twenty minutes of computing on one core. What was measured before, in DIR, is not run again;
 scenes that are not named keep their place in the table.
 """
 

@@ -98,7 +98,7 @@ def case_a() -> Scene:
     """The nodules of ``cases/horizontal_pipe.toml``, in a metre of its pipe, spread out."""
     case = _case(
         "Case A, a metre of it",
-        end_time=4.0,
+        end_time=8.0,
         pipe={"radius": 0.1, "length": 1.0},
         liquid=_WATER | {"bulk_velocity": 1.0},
         solids=_nodules(diameter=0.02, density=2700.0, volume_fraction=0.017),
@@ -113,7 +113,7 @@ def case_b() -> Scene:
     """Half a metre of ``cases/paper001_case2.toml``: the inclined pipe that is shaken sideways."""
     case = _case(
         "Case B2, half a metre of it",
-        end_time=5.0,
+        end_time=12.0,
         pipe={"radius": 0.1, "length": 0.5, "inclination": "50 deg"},
         liquid=_WATER | {"density": 1025.0, "bulk_velocity": 1.0},
         solids=_nodules(diameter=0.015, density=2500.0, volume_fraction=0.02),
