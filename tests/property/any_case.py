@@ -53,6 +53,8 @@ def of_type(annotation, metadata, path, ranges):
     limits = [m for m in metadata if isinstance(m, Quantity | Whole)]
     if limits:
         return number(limits[0], ranges.get(path))
+    if annotation is float:
+        return st.floats(-1.0, 1.0)
     if annotation is bool:
         return st.booleans()
     if annotation is str:

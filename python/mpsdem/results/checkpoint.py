@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mpsdem.case import Case, CaseError
 from mpsdem.results.errors import CheckpointError
-from mpsdem.results.files import new_hdf5, reading
+from mpsdem.results.files import new_hdf5, reading, sealed_hdf5
 
 FORMAT = "mpsdem checkpoint"
 FORMAT_VERSION = 1
@@ -70,7 +70,7 @@ def write_checkpoint(
     OutputError
         If it cannot be written; the checkpoint before it is then untouched.
     """
-    with new_hdf5(Path(path)) as file:
+    with new_hdf5(Path(path), seal=True) as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
         file.attrs["time"] = time
@@ -102,7 +102,7 @@ def read_checkpoint(path: str | os.PathLike[str], case: Case | None = None) -> C
     path = Path(path)
     if not path.is_file():
         raise CheckpointError(f"no checkpoint at {path}: the run must start from the beginning")
-    with reading(path, CheckpointError), h5py.File(path, "r", locking=False) as file:
+    with reading(path, CheckpointError), sealed_hdf5(path) as file:
         if file.attrs.get("format") != FORMAT:
             raise CheckpointError(f"{path} is an HDF5 file, but not a checkpoint of mpsdem")
         if file.attrs["format_version"] != FORMAT_VERSION:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import errno
+import hashlib
+import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -65,15 +67,15 @@ def make_directory(path: Path) -> Path:
     return path
 
 
-def write_atomically(path: Path, content: bytes) -> None:
+def write_atomically(path: Path, *content: bytes) -> None:
     """Write a file that is at every instant either the old one or the new one, whole.
 
     Parameters
     ----------
     path : Path
         The file; its directory exists.
-    content : bytes
-        What it shall hold.
+    *content : bytes
+        What it shall hold, in this order.
 
     Raises
     ------
@@ -84,7 +86,7 @@ def write_atomically(path: Path, content: bytes) -> None:
     try:
         with writing(path):
             with draft.open("wb") as file:
-                file.write(content)
+                file.writelines(content)
                 file.flush()
                 os.fsync(file.fileno())
             draft.replace(path)
@@ -126,13 +128,16 @@ def reserve(file: h5py.File, size: int, path: Path) -> None:
 
 
 @contextmanager
-def new_hdf5(path: Path) -> Iterator[h5py.File]:
+def new_hdf5(path: Path, *, seal: bool = False) -> Iterator[h5py.File]:
     """Build a small HDF5 file in memory and write it whole, as HDF5 does not survive a full disk.
 
     Parameters
     ----------
     path : Path
         The file to write when the block ends without an error.
+    seal : bool
+        Whether its SHA-256 follows it, for `sealed_hdf5` to find any damage; programs that read
+        HDF5 take no notice of that.
 
     Yields
     ------
@@ -143,4 +148,16 @@ def new_hdf5(path: Path) -> Iterator[h5py.File]:
         yield file
         file.flush()
         image = file.id.get_file_image()
-    write_atomically(path, image)
+    write_atomically(path, image, *([hashlib.sha256(image).digest()] if seal else []))
+
+
+@contextmanager
+def sealed_hdf5(path: Path) -> Iterator[h5py.File]:
+    """Open a file that was written with its seal, or raise ValueError if a bit of it differs."""
+    content = path.read_bytes()
+    size = len(content) - hashlib.sha256().digest_size
+    image, seal = content[:size], content[size:]
+    if size <= 0 or hashlib.sha256(image).digest() != seal:
+        raise ValueError("its checksum does not fit its content")
+    with h5py.File(io.BytesIO(image), "r") as file:
+        yield file

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mpsdem.case import Case
+from mpsdem.case import Case, CaseError
 from mpsdem.results.errors import ResultsError
 from mpsdem.results.files import RESULTS, SUMMARY
 from mpsdem.results.stored import Field, StoredRun
@@ -123,7 +123,10 @@ class Results:
     @cached_property
     def case(self) -> Case:
         """The case that was run."""
-        return Case.from_toml(self.case_toml)
+        try:
+            return Case.from_toml(self.case_toml)
+        except CaseError as error:
+            raise ResultsError(f"{self._run.path} holds no valid case: {error}") from error
 
     @property
     def case_toml(self) -> str:

@@ -18,6 +18,7 @@ from mpsdem.info import provenance
 from mpsdem.liquids import section_count
 from mpsdem.plan import Plan, make_plan
 from mpsdem.results import (
+    Checkpoint,
     CheckpointError,
     DirectoryLock,
     OutputError,
@@ -53,6 +54,9 @@ from mpsdem.stages import (
 )
 
 _EXPECTED = "expected.json"  # what was foreseen, kept beside the results for a run that is resumed
+# What a state keeps besides its parts, which keep their own state, or need none.
+_PARTS = {"population", "liquid", "exchange", "axis"}
+_KEPT = {f.name for f in fields(State)} - _PARTS - {"step", "time"}
 
 
 class Simulation:
@@ -235,29 +239,21 @@ class Simulation:
                 "output.every now lead to: give them their former values"
             )
         state = build_state(self.case, self.plan)
-        state.step, state.time = checkpoint.step, checkpoint.time
         try:
-            if state.population is not None:
-                state.population.restore(checkpoint.state["solids"])
-            if state.liquid is not None:
-                state.liquid.restore(checkpoint.state["liquid"])
-        except (KeyError, TypeError, ValueError) as error:
+            stopwatch = _restore(state, checkpoint)
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
             raise CheckpointError(
                 f"{path} holds no state that this version can go on from ({error}): "
                 "run the case anew"
             ) from None
-        for name, value in checkpoint.state["stages"].items():
-            setattr(state, name, value)
         if state.exchange is not None:
             begin_exchange(state)
         LOG.info("resumed at %g s", state.time)
         writer = ResultsWriter.reopen(self.directory, time=state.time)
-        return state, writer, Stopwatch(**checkpoint.state["spent"])
+        return state, writer, stopwatch
 
     def _write_checkpoint(self, state: State, stopwatch: Stopwatch) -> None:
         check(state, self.case.pipe.radius)
-        parts = {"population", "liquid", "exchange", "axis"}  # keep their own state, or need none
-        kept = {f.name for f in fields(State)} - parts - {"step", "time"}
         write_checkpoint(
             self.directory / "checkpoint.h5",
             case_toml=self.case.to_toml(),
@@ -266,7 +262,7 @@ class Simulation:
             state={
                 "solids": {} if state.population is None else state.population.state(),
                 "liquid": {} if state.liquid is None else state.liquid.state(),
-                "stages": {name: getattr(state, name) for name in kept},
+                "stages": {name: getattr(state, name) for name in _KEPT},
                 "spent": {"wall": stopwatch.wall, "cpu": stopwatch.cpu},
             },
         )
@@ -279,6 +275,33 @@ class Simulation:
             values["expected"] = json.loads(expected.read_bytes())
         write_summary(self.directory, values, not_applicable=not_applicable)
         LOG.info("%s at %g s after %.1f s of wall clock", status, state.time, stopwatch.wall)
+
+
+def _restore(state: State, checkpoint: Checkpoint) -> Stopwatch:
+    """Put a state where a checkpoint stands, or raise what does not fit; return the time spent."""
+    state.step, state.time = checkpoint.step, checkpoint.time
+    if state.population is not None:
+        state.population.restore(checkpoint.state["solids"])
+    if state.liquid is not None:
+        state.liquid.restore(checkpoint.state["liquid"])
+    stages = checkpoint.state["stages"]
+    if differing := sorted(stages.keys() ^ _KEPT):
+        raise KeyError(*differing)
+    for name, value in stages.items():
+        _require_alike(name, value, getattr(state, name))
+        setattr(state, name, value)
+    return Stopwatch(**checkpoint.state["spent"])
+
+
+def _require_alike(name: str, value: object, usual: object) -> None:
+    """Refuse what is no number, or no array of the kind, where a state holds one of any length."""
+    if isinstance(usual, np.ndarray) and isinstance(value, np.ndarray):
+        fits = value.dtype == usual.dtype and value.ndim == usual.ndim
+        fits = fits and value.shape[1:] == usual.shape[1:]
+    else:
+        fits = isinstance(value, int | float) and isinstance(usual, int | float)
+    if not fits:
+        raise TypeError(f"{name} is of another kind")
 
 
 def _slug(title: str) -> str:

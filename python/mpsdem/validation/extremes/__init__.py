@@ -6,7 +6,7 @@ writes ``docs/extremes.md``; with the beginnings of rows' names it runs these, a
 
 from mpsdem.validation.extremes.measure import Figures, doubts, faults, measure
 from mpsdem.validation.extremes.rows import Row, rows
-from mpsdem.validation.extremes.run import Came, run_row, run_rows
+from mpsdem.validation.extremes.run import Came, run_row, run_rows, timed
 from mpsdem.validation.extremes.table import markdown
 
 __all__ = [
@@ -20,4 +20,5 @@ __all__ = [
     "rows",
     "run_row",
     "run_rows",
+    "timed",
 ]

@@ -69,9 +69,9 @@ def run_row(row: Row) -> Came:
     """Run a row in this process; whatever is no refusal of the program's own is raised."""
     with tempfile.TemporaryDirectory(prefix="mpsdem-") as directory:
         try:
-            case = _timed(row.case(), row.steps)
+            case = timed(row.case(), row.steps)
             simulation = Simulation(case, directory)
-            with _steps_timed() as seconds, simulation.run(bar=False) as results:
+            with _time_of_steps() as seconds, simulation.run(bar=False) as results:
                 if row.then:
                     results = _resumed(case.with_(**row.then), Path(directory))
                 return _survived(row, simulation.plan, results, seconds())
@@ -81,7 +81,7 @@ def run_row(row: Row) -> Came:
             return Came(row=row, outcome="stopped", reason=str(stop))
 
 
-def _timed(case: Case, steps: int) -> Case:
+def timed(case: Case, steps: int) -> Case:
     """End the case after about so many steps of its liquid, with some frames on the way."""
     longest = make_plan(case.with_(end_time=_EVER, output={"every": _EVER}))
     step = (longest.liquid_step or longest.coupling_step).value
@@ -103,7 +103,7 @@ class _Started(logging.Handler):
 
 
 @contextmanager
-def _steps_timed() -> Iterator[Callable[[], float]]:
+def _time_of_steps() -> Iterator[Callable[[], float]]:
     """Give what tells the processor time since the set-up of the run within [s]."""
     log, started = logging.getLogger("mpsdem"), _Started()
     log.addHandler(started)
