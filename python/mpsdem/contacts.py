@@ -98,7 +98,7 @@ class Impact:
     @property
     def duration(self) -> float:
         """Time from first touch to parting of the Hertz contact [s]."""
-        return math.inf if self.speed == 0 else 2.9432 * self.overlap / self.speed
+        return math.inf if self.overlap == 0 else 2.9432 * self.overlap / self.speed
 
     @property
     def linear_stiffness(self) -> float:

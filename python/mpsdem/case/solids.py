@@ -54,7 +54,7 @@ class Lognormal(Part):
 
     kind: Literal["lognormal"] = "lognormal"
     median: PositiveLength
-    deviation: Annotated[float, Quantity(above=0.0)]
+    deviation: Annotated[float, Quantity(above=0.0, at_most=10.0)]
     smallest: PositiveLength
     largest: PositiveLength
 

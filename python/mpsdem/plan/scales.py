@@ -45,6 +45,7 @@ _LIGHT = 2.0
 # Stokes number of an impact below which the liquid takes a third and more of the rebound [-]: it
 # leaves exp(-35 / St) of the restitution. Legendre et al. (2005), doi:10.1063/1.2010527.
 _VISCOUS = 100.0
+_STILL = 1e-30  # [m/s] below which nothing moves, and whose square is still a number
 LEAST_GAP = 3e-3  # [-] over the reduced radius, that lubrication takes rough surfaces to leave
 
 
@@ -93,7 +94,7 @@ def spring_stiffness(case: Case, speed: float) -> tuple[float, float]:
 
 def require_speed(speed: float, field: str, remedy: str) -> None:
     """Refuse contacts that are to be derived from a speed where there is none."""
-    if speed == 0:
+    if speed < _STILL:
         rule = "neither gravity, liquid nor a first velocity moves the solids into contact"
         raise CaseError([Problem(field=field, rule=rule, remedy=remedy)])
 
