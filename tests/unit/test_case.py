@@ -83,6 +83,7 @@ def problems(case, *settings, **changes):
         ("solids.wall.restitution=2", "solids.wall.restitution = 2: must be > 0 and <= 1"),
         ("fidelity.rayleigh_fraction=0.6", "fidelity.rayleigh_fraction = 0.6: must be > 0 and "),
         ("fidelity.stiffness_factor=2", "fidelity.stiffness_factor = 2: must be > 0 and <= 1"),
+        ("pipe.roughness=0.011", "pipe.roughness = 0.011: must be <= 0.01 m, a twentieth of the "),
         # choices
         (
             "solids.contact=hertz",

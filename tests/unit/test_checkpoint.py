@@ -3,6 +3,7 @@
 import errno
 import os
 
+import h5py
 import numpy as np
 import pytest
 from synthetic_results import CASE
@@ -73,6 +74,20 @@ def test_a_damaged_checkpoint_is_refused(path, keep):
     path.write_bytes(path.read_bytes()[:keep])
     with pytest.raises(CheckpointError, match="damaged"):
         read_checkpoint(path, CASE)
+
+
+def test_a_checkpoint_of_which_one_bit_is_wrong_is_refused(path):
+    content = bytearray(path.read_bytes())
+    at = content.index(STATE["solids"]["position"].tobytes()) + 5
+    content[at] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(CheckpointError, match="damaged: its checksum"):
+        read_checkpoint(path, CASE)
+
+
+def test_any_program_reads_the_checkpoint_in_spite_of_its_checksum(path):
+    with h5py.File(path, "r") as file:
+        assert file["state/solids/position"].shape == (2, 3)
 
 
 def test_the_old_checkpoint_is_replaced_and_not_overwritten(path):

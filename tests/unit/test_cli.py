@@ -225,3 +225,91 @@ def test_a_killed_run_resumes_to_the_numbers_of_one_that_was_left_alone(case_fil
     took = {"wall_seconds", "cpu_seconds"}
     for name in one.summary.keys() - took:
         assert one.summary[name] == other.summary[name], name
+
+
+def test_two_runs_in_one_directory_are_one_run_and_a_refusal(case_file, tmp_path):
+    out = tmp_path / "out"
+    first = start("run", case_file, "-o", out, "--until", "1000")
+    wait_until(lambda: checkpoint_time(out) == 0)
+    for command in (["run", case_file, "-o", out, "--overwrite"], ["resume", out]):
+        second = type_in(*command)
+        assert second.exit_code == 2
+        assert f"in use by a run with process id {first.pid}" in second.stderr
+    first.send_signal(signal.SIGINT)
+    _, said = first.communicate(timeout=60)
+    assert first.returncode == 130, said
+    with Results(out) as results:
+        assert results.summary["status"] == "interrupted"
+
+
+def test_a_second_signal_ends_a_run_at_once_and_costs_no_frame(case_file, tmp_path):
+    """The first waits for the step; who cannot wait presses Ctrl-C again, or kills."""
+    out = tmp_path / "out"
+    settings = ["--until", "1000", "--set", "output.checkpoint_every=0.1"]
+    process = start("run", case_file, "-o", out, *settings)
+    wait_until(lambda: checkpoint_time(out) > 0)
+    for _ in range(20):
+        process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=60)
+    assert process.returncode in (143, -signal.SIGTERM)
+    assert len(Results(out).time) > 0
+
+
+@pytest.mark.parametrize("name", ["checkpoint.h5", "results.h5", "case.toml"])
+@pytest.mark.parametrize("keep", [0.0, 0.2])
+def test_a_run_whose_files_are_damaged_is_not_resumed_and_told_of_them(
+    name, keep, case_file, tmp_path
+):
+    out = tmp_path / "out"
+    assert type_in("run", case_file, "-o", out).exit_code == 0
+    content = (out / name).read_bytes()
+    (out / name).write_bytes(content[: int(keep * len(content))])
+    said = type_in("resume", out)
+    assert said.exit_code == 2
+    assert name in said.stderr
+    assert "Traceback" not in said.stderr
+
+
+@pytest.mark.parametrize("missing", ["checkpoint.h5", "results.h5", "case.toml"])
+def test_a_run_whose_files_are_gone_is_not_resumed_and_told_of_them(missing, case_file, tmp_path):
+    out = tmp_path / "out"
+    assert type_in("run", case_file, "-o", out).exit_code == 0
+    (out / missing).unlink()
+    said = type_in("resume", out)
+    assert said.exit_code == 2
+    assert missing in said.stderr
+
+
+def test_a_directory_that_takes_no_file_is_named_with_the_reason(case_file):
+    said = type_in("run", case_file, "-o", "/proc/mpsdem")
+    assert said.exit_code == 2
+    assert "cannot write /proc/mpsdem" in said.stderr
+    assert "Traceback" not in said.stderr
+
+
+FULL = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (4_000_000, 4_000_000))
+from mpsdem.cli import main
+main()
+"""
+
+
+def test_a_run_that_may_not_write_more_says_so_and_keeps_its_frames(case_file, tmp_path):
+    out = tmp_path / "out"
+    settings = ["--until", "1000", "--set", "output.checkpoint_every=0.1"]
+    command = [sys.executable, "-c", FULL, "run", case_file, "-o", out, *settings]
+    environment = os.environ | {"PYTHONPATH": str(PACKAGE)}
+    run = subprocess.run(
+        list(map(str, command)), env=environment, capture_output=True, text=True, timeout=120
+    )
+    assert run.returncode == 2, run.stderr
+    assert f"cannot write {out / 'results.h5'}" in run.stderr
+    assert "Traceback" not in run.stderr
+    with Results(out) as results:
+        assert len(results.time) > 0
+        assert np.isfinite(results.solids.position[:]).all()
+    text = (out / "case.toml").read_text().replace("end_time = 1000.0", "end_time = 0.2")
+    (out / "case.toml").write_text(text)
+    assert type_in("resume", out).exit_code == 0

@@ -2,6 +2,7 @@
 
 import math
 
+import fluids
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,8 +10,10 @@ from hypothesis import strategies as st
 from mpsdem.case import Case, CaseError
 from mpsdem.contacts import Impact, Stiffness
 from mpsdem.plan import Clock, impacts, make_plan, spring_stiffness, terminal_velocity
+from mpsdem.plan.scales import fastest_flow, turbulence
 
 WATER = {"model": "profile", "density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0}
+AUTO = {"model": "auto"}
 NODULES = {
     "diameter": 0.02,
     "density": 2700.0,
@@ -195,6 +198,56 @@ def test_a_contact_that_is_too_soft_is_warned_of():
     soft = make_plan(case(fidelity={"stiffness_factor": 1e-3}))
     assert any("of the radius" in warning for warning in soft.warnings)
     assert not any("of the radius" in warning for warning in make_plan(case()).warnings)
+
+
+def test_contacts_that_solids_would_go_through_are_refused_with_a_modulus_that_holds():
+    with pytest.raises(CaseError, match="of the radius deep, through what it hits") as refused:
+        make_plan(case(solids={"youngs_modulus": 1e4}))
+    (problem,) = refused.value.problems
+    assert (problem.field, problem.value, problem.unit) == ("solids.youngs_modulus", 1e4, "Pa")
+    least = float(problem.rule.split()[3])
+    assert 1e4 < least < 1e5
+    assert make_plan(case(solids={"youngs_modulus": 1.1 * least}))
+
+
+@pytest.mark.parametrize("roughness", [0.0, 1e-3])
+@pytest.mark.parametrize("gradient", [0.1, 10.0, -1000.0])
+def test_a_liquid_that_a_gradient_drives_is_planned_for_the_speed_it_comes_to(gradient, roughness):
+    """From rest as much as from that speed: the friction there balances the gradient."""
+    pipe = {"radius": 0.1, "length": 4.0, "roughness": roughness}
+    driven = Case(
+        end_time=2.0,
+        pipe=pipe,
+        liquid=WATER | {"model": "lagrangian", "bulk_velocity": 0.0, "pressure_gradient": gradient},
+    )
+    speed = fastest_flow(driven)
+    friction = fluids.friction_factor(Re=speed * 0.2 / 1e-6, eD=roughness / 0.2, Method="Colebrook")
+    assert friction * 1000.0 * speed**2 / 0.4 == pytest.approx(abs(gradient), rel=2e-3)
+    held = driven.with_(liquid={"bulk_velocity": speed})
+    assert make_plan(driven).liquid_step.value == make_plan(held).liquid_step.value
+    assert turbulence(driven) == turbulence(held) == "mixing_length"
+
+
+def test_a_gradient_too_weak_for_turbulence_leads_to_a_parabola():
+    oil = {"kinematic_viscosity": 1e-3, "bulk_velocity": 0.0, "pressure_gradient": 100.0}
+    driven = Case(end_time=2.0, pipe={"radius": 0.1, "length": 4.0}, liquid=WATER | oil | AUTO)
+    assert fastest_flow(driven) == pytest.approx(100.0 * 0.1**2 / (8 * 1000.0 * 1e-3), rel=1e-12)
+    assert turbulence(driven) is None
+
+
+def test_solids_in_a_liquid_that_starts_from_rest_are_looked_at_as_often_as_in_one_that_flows():
+    """Steps judged by the start alone were a thousand times too long, and solids left the bore."""
+    start = {"model": "eulerian", "bulk_velocity": 0.0, "pressure_gradient": 100.0}
+    from_rest = case(liquid=WATER | start, gravity=1e-8)
+    moving = from_rest.with_(liquid={"bulk_velocity": fastest_flow(from_rest)})
+    assert make_plan(from_rest).coupling_step.value == make_plan(moving).coupling_step.value
+
+
+def test_a_speed_too_small_to_square_is_a_speed_nonetheless():
+    still = case(liquid=WATER | {"bulk_velocity": 1e-245}, gravity=0.0)
+    assert make_plan(still).solid_step.value > 0
+    with pytest.raises(CaseError, match="impact_speed"):
+        make_plan(still.with_(solids={"contact": "linear_spring"}))
 
 
 def test_threads_are_left_out_where_they_would_lose():

@@ -11,7 +11,15 @@ from synthetic_results import blank
 
 from mpsdem import Results, Simulation, SimulationDiverged
 from mpsdem.case import Case
-from mpsdem.results import SUMMARY_KEYS, CheckpointError, DirectoryLock, LockError, OutputError
+from mpsdem.results import (
+    SUMMARY_KEYS,
+    CheckpointError,
+    DirectoryLock,
+    LockError,
+    OutputError,
+    read_checkpoint,
+    write_checkpoint,
+)
 
 WATER = {
     "model": "profile",
@@ -97,6 +105,12 @@ def test_clear_water_loses_the_pressure_of_an_independent_formula(clear):
 def test_backward_flow_loses_pressure_backwards(clear, tmp_path):
     back = Simulation(case(solids=None, liquid=WATER | {"bulk_velocity": -1.0}), tmp_path).run()
     np.testing.assert_allclose(back.pressure_gradient, -clear.pressure_gradient)
+
+
+def test_a_velocity_too_small_to_square_ends_in_a_summary_all_the_same(tmp_path):
+    nearly = WATER | {"model": "eulerian", "bulk_velocity": 1e-180}
+    summary = Simulation(case(solids=None, liquid=nearly, end_time=0.02), tmp_path).run().summary
+    assert summary["status"] == "finished"
 
 
 def test_a_riser_carries_the_submerged_weight_of_its_solids(tmp_path):
@@ -214,6 +228,47 @@ def test_a_checkpoint_of_another_case_is_refused_with_the_keys_that_differ(tmp_p
     (tmp_path / "case.toml").write_text(heavier.to_toml())
     with pytest.raises(CheckpointError, match=r"solids\.density"):
         Simulation.resume(tmp_path).run()
+
+
+def _lost(part, name):
+    del part[name]
+
+
+def _of_another_type(part, name):
+    part[name] = "of another version"
+
+
+def _of_another_size(part, name):
+    part[name] = np.zeros((2, 2, 2), dtype=np.float32)
+
+
+def _unknown(part, name):
+    part[f"{name}_of_old"] = part.pop(name)
+
+
+@pytest.mark.parametrize("change", [_lost, _of_another_type, _of_another_size, _unknown])
+@pytest.mark.parametrize(
+    ("part", "model"),
+    [("solids", "profile"), ("stages", "profile"), ("spent", "profile"), ("liquid", "eulerian")],
+)
+def test_a_state_of_another_version_is_refused_in_words(change, part, model, tmp_path):
+    """Whole and unharmed, but not what this version keeps: a crash would be no help."""
+    resumed = case(liquid=WATER | {"model": model}, end_time=0.02)
+    Simulation(resumed, tmp_path).run()
+    path = tmp_path / "checkpoint.h5"
+    checkpoint = read_checkpoint(path)
+    for name in sorted(checkpoint.state[part]):
+        state = checkpoint.state | {part: dict(checkpoint.state[part])}
+        change(state[part], name)
+        write_checkpoint(
+            path,
+            case_toml=checkpoint.case_toml,
+            time=checkpoint.time,
+            step=checkpoint.step,
+            state=state,
+        )
+        with pytest.raises(CheckpointError, match="this version"):
+            Simulation.resume(tmp_path).run()
 
 
 def test_a_finished_run_can_be_given_more_time(tmp_path):

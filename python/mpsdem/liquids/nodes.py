@@ -154,4 +154,5 @@ class NodeLiquid:
     def restore(self, state: Mapping[str, Any]) -> None:
         self.nodes.restore({k: v for k, v in state.items() if not k.startswith("tally_")})
         for name in NodeTally.__slots__:
-            setattr(self.tally, name, state[f"tally_{name}"])
+            kind = type(getattr(self.tally, name))
+            setattr(self.tally, name, kind(state[f"tally_{name}"]))

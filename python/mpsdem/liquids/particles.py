@@ -225,4 +225,5 @@ class ParticleLiquid:
         if self.axis is not None:
             self.particles.bend(bending(self.axis, self.time, self.time + 1.0))
         for name in Tally.__slots__:
-            setattr(self.tally, name, state[f"tally_{name}"])
+            kind = type(getattr(self.tally, name))
+            setattr(self.tally, name, kind(state[f"tally_{name}"]))

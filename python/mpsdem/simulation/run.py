@@ -241,7 +241,7 @@ class Simulation:
         state = build_state(self.case, self.plan)
         try:
             stopwatch = _restore(state, checkpoint)
-        except (AttributeError, KeyError, TypeError, ValueError) as error:
+        except (KeyError, RuntimeError, TypeError, ValueError) as error:
             raise CheckpointError(
                 f"{path} holds no state that this version can go on from ({error}): "
                 "run the case anew"
@@ -290,7 +290,8 @@ def _restore(state: State, checkpoint: Checkpoint) -> Stopwatch:
     for name, value in stages.items():
         _require_alike(name, value, getattr(state, name))
         setattr(state, name, value)
-    return Stopwatch(**checkpoint.state["spent"])
+    spent = checkpoint.state["spent"]
+    return Stopwatch(wall=float(spent["wall"]), cpu=float(spent["cpu"]))
 
 
 def _require_alike(name: str, value: object, usual: object) -> None:

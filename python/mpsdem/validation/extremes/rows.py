@@ -205,7 +205,11 @@ def _pipe() -> Iterator[Row]:
         f"{angle:g} deg": {"pipe": {"inclination": f"{angle} deg"}} for angle in (-90.0, 45.0, 90.0)
     }
     yield from _each("inclination", angles)
-    yield from _each("pipe length", {"0.5 D": {"pipe": {"length": 0.5 * BORE}}})
+    short = {"pipe": {"length": 0.5 * BORE}}
+    yield from _each("pipe length", {"0.5 D": short}, (PROFILE,))
+    yield from _each("pipe length", {"0.5 D, ten spacings": short}, COMPUTED, outcome="refused")
+    resolved = short | {"fidelity": {"particle_spacing": BORE / 13}}
+    yield from _each("pipe length", {"0.5 D, thirteen spacings": resolved}, COMPUTED)
     long = {"pipe": {"length": 500 * BORE}, "fidelity": {"particle_spacing": BORE / 6}}
     yield from _each("pipe length", {"500 D": long}, steps=10)
     longest = (_LENGTH - BORE / 2) / 1.5
@@ -235,7 +239,7 @@ def _motion() -> Iterator[Row]:
         "50 Hz, 1 mm, mode 2": shaken("z", 50.0, 1e-3, mode=2),
         "1 Hz, one bore, mode 2": shaken("z", 1.0, BORE, mode=2),
     }
-    yield from _each("vibration", bent, (LAGRANGIAN,), outcome="refused")
+    yield from _each("vibration", bent, (LAGRANGIAN,))
 
 
 def _numerics() -> Iterator[Row]:

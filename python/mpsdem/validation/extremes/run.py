@@ -6,6 +6,7 @@ import logging
 import math
 import multiprocessing
 import resource
+import signal
 import sys
 import tempfile
 import time
@@ -23,7 +24,8 @@ from mpsdem.simulation import Simulation, SimulationDiverged
 from mpsdem.validation.extremes.measure import doubts, faults, measure
 from mpsdem.validation.extremes.rows import Row
 
-TIME_LIMIT = 120.0  # [s] after which a row hangs
+TIME_LIMIT = 120  # [s] of processor time after which a row hangs
+_PATIENCE = 10  # [-] that in wall clock, over it, on a busy machine
 _FRAMES = 10
 _EVER = 1e6  # [s] so long that no output limits a step
 _CROSSING = 0.1  # [-] of the time in which a solid crosses its diameter, as a liquid's turn is
@@ -139,7 +141,7 @@ def _memory() -> float:
 
 
 def run_rows(
-    rows: Iterable[Row], *, limit: float = TIME_LIMIT, run: Callable[[Row], Came] = run_row
+    rows: Iterable[Row], *, limit: int = TIME_LIMIT, run: Callable[[Row], Came] = run_row
 ) -> Iterator[Came]:
     """Run rows one after the other, each in a process of its own.
 
@@ -147,8 +149,8 @@ def run_rows(
     ----------
     rows : iterable of Row
         Which.
-    limit : float
-        Time of wall clock after which one hangs, and is killed [s].
+    limit : int
+        Processor time after which one hangs, and is killed [s]; ten times that of wall clock.
     run : callable
         What runs one; importable from its module.
     """
@@ -156,13 +158,14 @@ def run_rows(
     processes.set_forkserver_preload([__name__])
     for row in rows:
         here, there = processes.Pipe(duplex=False)
-        child = processes.Process(target=_child, args=(run, row, there))
+        child = processes.Process(target=_child, args=(run, row, there, limit))
         child.start()
         there.close()
         yield _awaited(row, child, here, limit)
 
 
-def _child(run: Callable[[Row], Came], row: Row, to_parent: Connection) -> None:
+def _child(run: Callable[[Row], Came], row: Row, to_parent: Connection, limit: int) -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 1))
     try:
         came = run(row)
     except Exception as error:
@@ -170,17 +173,20 @@ def _child(run: Callable[[Row], Came], row: Row, to_parent: Connection) -> None:
     to_parent.send(came)
 
 
-def _awaited(row: Row, child: Any, from_child: Connection, limit: float) -> Came:
+def _awaited(row: Row, child: Any, from_child: Connection, limit: int) -> Came:
+    hung = Came(row=row, outcome="hangs", reason=f"no end after {limit} s")
     try:
-        if from_child.poll(limit):
+        if from_child.poll(_PATIENCE * limit):
             came: Came = from_child.recv()
             child.join()
             return came
         child.kill()
         child.join()
-        return Came(row=row, outcome="hangs", reason=f"no end after {limit:g} s")
+        return hung
     except EOFError:
         child.join()
+        if child.exitcode == -signal.SIGXCPU:
+            return hung
         return Came(row=row, outcome="crashes", reason=f"exit code {child.exitcode}")
     finally:
         from_child.close()
