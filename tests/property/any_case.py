@@ -4,11 +4,12 @@ import copy
 import re
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from hypothesis import strategies as st
 
 from mpsdem.case import Case, CaseError
+from mpsdem.case.motion import Vibration
 from mpsdem.case.part import Part
 from mpsdem.case.units import Quantity, Range, Whole
 
@@ -35,21 +36,21 @@ def number(limits: Range, narrow):
     return st.one_of(spread, st.sampled_from(edges)).filter(limits.holds)
 
 
-def of_type(annotation, metadata, path, ranges):
+def of_type(annotation, metadata, path, ranges, always=frozenset()):
     """What a field of that type may hold, as a file would give it."""
     origin = typing.get_origin(annotation)
     arguments = typing.get_args(annotation)
     if origin is typing.Annotated:
-        return of_type(arguments[0], [*arguments[1:], *metadata], path, ranges)
+        return of_type(arguments[0], [*arguments[1:], *metadata], path, ranges, always)
     if origin is typing.Literal:
         return st.sampled_from(arguments)
     if origin in (typing.Union, types.UnionType):
         kinds = [kind for kind in arguments if kind is not type(None)]
-        return st.one_of(*(of_type(kind, metadata, path, ranges) for kind in kinds))
+        return st.one_of(*(of_type(kind, metadata, path, ranges, always) for kind in kinds))
     if origin is tuple:
         if arguments[-1] is Ellipsis:
-            return st.lists(of_type(arguments[0], [], path, ranges), min_size=1, max_size=3)
-        return st.tuples(*(of_type(kind, [], path, ranges) for kind in arguments)).map(list)
+            return st.lists(of_type(arguments[0], [], path, ranges, always), min_size=1, max_size=3)
+        return st.tuples(*(of_type(kind, [], path, ranges, always) for kind in arguments)).map(list)
     limits = [m for m in metadata if isinstance(m, Quantity | Whole)]
     if limits:
         return number(limits[0], ranges.get(path))
@@ -60,31 +61,47 @@ def of_type(annotation, metadata, path, ranges):
     if annotation is str:
         return st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
     assert issubclass(annotation, Part), f"{path}: draw {annotation} too"
-    return of_part(annotation, path, ranges)
+    return of_part(annotation, path, ranges, always)
 
 
-def of_part(part: type[Part], path, ranges):
-    """Tables that fit one part of a case; what has a default is there or not."""
+def of_part(part: type[Part], path, ranges, always=frozenset()):
+    """Tables that fit one part of a case; what has a default is there or not, or `always`."""
     keys = {}
     for name, field in part.model_fields.items():
         where = f"{path}.{name}" if path else name
         if ranges.get(where, ()) is None:
             continue
-        keys[name] = (field.is_required(), of_type(field.annotation, field.metadata, where, ranges))
-    if "kind" in part.model_fields:
-        keys["kind"] = (True, keys["kind"][1])
-    return st.fixed_dictionaries(
+        required = field.is_required() or where in always or name == "kind"
+        strategy = of_type(field.annotation, field.metadata, where, ranges, always)
+        keys[name] = (required, strategy)
+    drawn = st.fixed_dictionaries(
         {name: strategy for name, (required, strategy) in keys.items() if required},
         optional={name: strategy for name, (required, strategy) in keys.items() if not required},
     )
+    return drawn.map(_one_vibration) if part is Vibration else drawn
 
 
-def tables(ranges: Mapping[str, tuple[float, float] | None] | None = None):
+def _one_vibration(table):
+    """Of the keys of a vibration that exclude each other, one."""
+    table.pop("period" if "frequency" in table else "frequency", None)
+    if "frequency" not in table:
+        table.setdefault("period", 0.1)
+    table["mode"] = table.get("mode", 0) // 2 * 2  # the outlet moves as the inlet does
+    if table["mode"] and table["direction"] not in ("y", "z"):
+        table["direction"] = "z"
+    return table
+
+
+def tables(
+    ranges: Mapping[str, tuple[float, float] | None] | None = None,
+    always: Collection[str] = (),
+):
     """Tables of whole cases.
 
-    `ranges` narrows keys, by their dotted names; one that is None is never given.
+    `ranges` narrows keys, by their dotted names; one that is None is never given. Those of `always`
+    are given even where they have a default.
     """
-    return of_part(Case, "", ranges or {})
+    return of_part(Case, "", ranges or {}, frozenset(always))
 
 
 def leaves(table, path=()):

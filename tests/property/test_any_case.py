@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from mpsdem import Simulation
 from mpsdem.case import Case, CaseError
 from mpsdem.plan import make_plan
-from mpsdem.validation.extremes import faults, timed
+from mpsdem.trade import choose
+from mpsdem.trade.machine import Machine
+from mpsdem.validation.extremes import doubts, faults, measure, timed
 
 # Powers of ten around anything that a pipe may be, kept apart by what a plan can be made of.
 WIDE = {
@@ -83,8 +85,8 @@ SMALL = WIDE | {
     "solids.density": (50.0, 2e4),
     "solids.count": (1, 60),
     "solids.volume_fraction": (1e-3, 0.1),
-    "solids.youngs_modulus": (1e5, 1e9),
-    "solids.wall.youngs_modulus": (1e5, 1e9),
+    "solids.youngs_modulus": (1e6, 1e9),
+    "solids.wall.youngs_modulus": (1e6, 1e9),
     "solids.friction": (0.0, 2.0),
     "solids.rolling_friction": (0.0, 2.0),
     "solids.wall.friction": (0.0, 2.0),
@@ -104,18 +106,19 @@ SMALL = WIDE | {
     "solids.arrangement.spins": (-100.0, 100.0),
     "solids.arrangement.positions": (-0.02, 0.1),
     "solids.arrangement.diameters": (4e-3, 3e-2),
-    "motion.vibration.amplitude": (0.0, 0.1),
+    "motion.vibration.amplitude": (0.0, 0.02),
     "motion.vibration.frequency": (0.1, 50.0),
     "motion.vibration.period": (0.02, 10.0),
+    "motion.vibration.mode": (0, 4),
     "motion.times": None,
     "motion.displacements": None,
     "fidelity.particle_spacing": (0.008, 0.02),
     "fidelity.smoothing_radius": (0.02, 0.05),
     "fidelity.courant": (0.1, 2.0),
     "fidelity.stiffness_factor": (0.1, 1.0),
-    "fidelity.solid_step": (1e-6, 1e-4),
+    "fidelity.solid_step": (1e-7, 1e-5),
     "fidelity.liquid_step": (1e-4, 1e-1),
-    "fidelity.coupling_step": (1e-5, 1e-2),
+    "fidelity.coupling_step": (1e-6, 1e-3),
     "fidelity.rayleigh_fraction": (0.02, 0.5),
     "fidelity.pressure_tolerance": (1e-8, 0.1),
     "fidelity.pressure_solver": None,
@@ -126,7 +129,47 @@ FIXED = {
     "fidelity": {"level": "quick", "threads": 1},
     "output": {"figures": False, "liquid_stride": 1},
 }
+# What is given in every other run, for the models, laws and motions to meet each other.
+ALWAYS = {
+    "liquid",
+    "liquid.model",
+    "liquid.bulk_velocity",
+    "solids",
+    "solids.drag",
+    "solids.contact",
+    "solids.arrangement",
+    "motion",
+    "motion.vibration",
+    "motion.vibration.amplitude",
+    "fidelity",
+}
+RUNS = st.one_of(tables(SMALL), tables(SMALL, ALWAYS))
+MOTIONS = st.none() | st.fixed_dictionaries(
+    {
+        "walls": st.sampled_from(["auto", "moving"]),
+        "vibration": st.lists(
+            st.fixed_dictionaries(
+                {
+                    "direction": st.sampled_from(["y", "z"]),
+                    "amplitude": st.floats(1e-4, 5e-3),
+                    "frequency": st.floats(0.5, 30.0),
+                    "phase": st.floats(0.0, 6.28),
+                    "mode": st.sampled_from([0, 0, 2, 4]),
+                    "ramp": st.sampled_from([0.0, 0.1]),
+                }
+            ),
+            min_size=1,
+            max_size=3,
+        ),
+    }
+)
+MACHINE = Machine(solids=0.03, liquid=0.03)
+# [-] of momentum that fifty steps may leave unexplained: at both ends the velocity of the solids is
+# that of half a step before, which weighs as one over the time (0.045 is 0.007 in five times it).
+ENDS = 0.1
+MOST_TURNS = 200  # of walls that move, which cost milliseconds that the estimate leaves out
 LONGEST = 3.0  # [s] that a run may take by its own estimate, to be drawn here
+COUPLINGS = st.sampled_from(["auto", "two-way", "one-way"])
 MODELS = st.sampled_from(["profile", "eulerian", "lagrangian"])
 
 
@@ -149,19 +192,59 @@ def plan_or_refusal(table):
     assert math.isfinite(plan.estimate.wall_seconds)
 
 
-def run_keeps_what_must_be_kept(table, model, coupling):
+def a_budget_and_an_error_choose_a_plan_or_say_why_not(table, seconds, error):
+    """What is chosen takes no longer, or errs no more, than was asked for."""
+    case = agreed(table)
+    assume(case is not None)
+    refusals = []
+    for asked in ({"seconds": seconds}, {"error": error}):
+        try:
+            chosen = choose(case, machine=MACHINE, **asked)
+        except CaseError as error_told:
+            refusals.extend(error_told.problems)
+            continue
+        assert make_plan(chosen.case).liquid_model == chosen.plan.liquid_model
+        assert chosen.seconds <= asked.get("seconds", math.inf)
+        assert not chosen.error > asked.get("error", math.inf)
+    assert all(problem.rule for problem in refusals)
+
+
+def of_kinds(table, model, coupling, motion):
+    """The table with that liquid, coupling and motion, as far as they go together."""
+    if motion is not None:
+        table["motion"] = motion
+        flexes = any(part["mode"] for part in motion["vibration"])
+        if flexes or motion["walls"] == "moving":
+            model, table["pipe"]["ends"] = "lagrangian", "periodic"
+            motion["walls"] = "moving"
+            table.get("solids", {}).pop("held", None)
     if "liquid" in table:
         table["liquid"]["model"] = model
+        if model == "profile":  # steady, and takes no notice of solids
+            table["liquid"].pop("pressure_gradient", None)
+            coupling = "one-way" if coupling == "two-way" else coupling
     if "solids" in table:
         table.setdefault("fidelity", {})["coupling"] = coupling
-    case = agreed(table)
+    return table
+
+
+def run_keeps_what_must_be_kept(table, model, coupling, motion):
+    case = agreed(of_kinds(table, model, coupling, motion))
     assume(case is not None)
     try:
         case = timed(case.with_(**FIXED), 50)
         plan = make_plan(case)
         assume(plan.estimate.wall_seconds < LONGEST)
+        assume(not (case.motion.moves_walls and plan.clock.steps > MOST_TURNS))
         with TemporaryDirectory() as directory, Simulation(case, directory).run() as results:
             assert list(faults(plan, results)) == []
+            figures = measure(plan, results)
+        doubted = list(doubts(plan, figures))
+        if any("of the radius deep" in warning for warning in plan.warnings):
+            doubted = [told for told in doubted if not told.startswith("overlap")]  # as foreseen
+        if figures.momentum_error is not None and figures.momentum_error <= ENDS:
+            doubted = [told for told in doubted if not told.startswith("momentum")]
+        assert doubted == []
         return
     except CaseError as error:
         problems = error.problems
@@ -224,10 +307,16 @@ def test_a_key_that_is_not_known_is_refused_by_its_name(table, data):
     an_unknown_key_is_refused_by_its_name(table, data)
 
 
-@settings(max_examples=12)
-@given(tables(SMALL), MODELS, st.sampled_from(["auto", "two-way"]))
-def test_whatever_runs_keeps_its_solids_its_ledgers_and_its_numbers(table, model, coupling):
-    run_keeps_what_must_be_kept(table, model, coupling)
+@settings(max_examples=10)
+@given(tables(SMALL, ALWAYS), st.floats(1.0, 1e5), st.floats(0.01, 0.5))
+def test_a_budget_and_an_error_lead_to_a_plan_or_a_refusal(table, seconds, error):
+    a_budget_and_an_error_choose_a_plan_or_say_why_not(table, seconds, error)
+
+
+@settings(max_examples=25)
+@given(RUNS, MODELS, COUPLINGS, MOTIONS)
+def test_whatever_runs_keeps_its_solids_its_ledgers_and_its_numbers(table, model, coupling, motion):
+    run_keeps_what_must_be_kept(table, model, coupling, motion)
 
 
 @pytest.mark.slow
@@ -240,6 +329,6 @@ def test_many_cases_become_plans_or_refusals(table, data):
 
 @pytest.mark.slow
 @settings(max_examples=1000)
-@given(tables(SMALL), MODELS, st.sampled_from(["auto", "two-way"]))
-def test_many_runs_keep_their_solids_their_ledgers_and_their_numbers(table, model, coupling):
-    run_keeps_what_must_be_kept(table, model, coupling)
+@given(RUNS, MODELS, COUPLINGS, MOTIONS)
+def test_many_runs_keep_solids_ledgers_and_numbers(table, model, coupling, motion):
+    run_keeps_what_must_be_kept(table, model, coupling, motion)

@@ -1,6 +1,7 @@
 """What a user types, and what comes back: words on the terminal, an exit code, a directory."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -268,6 +269,58 @@ def test_a_run_whose_files_are_damaged_is_not_resumed_and_told_of_them(
     assert said.exit_code == 2
     assert name in said.stderr
     assert "Traceback" not in said.stderr
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A run to copy and to damage."""
+    folder = tmp_path_factory.mktemp("finished")
+    (folder / "pipe.toml").write_text(CASE)
+    assert type_in("run", folder / "pipe.toml", "-o", folder / "out").exit_code == 0
+    return folder / "out"
+
+
+DAMAGES = {
+    "empty": lambda content: content[:0],
+    "cut": lambda content: content[: len(content) // 5],
+    "zeros": lambda content: bytes(len(content)),
+    "another file": lambda content: b"\x89PNG\r\n\x1a\n" + content[8:],
+    "a page lost": lambda content: content[:512] + bytes(4096) + content[4608:],
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+@pytest.mark.parametrize("command", ["report", "export"])
+def test_damaged_results_are_one_message_without_a_traceback(command, damage, finished, tmp_path):
+    out = shutil.copytree(finished, tmp_path / "out")
+    results = out / "results.h5"
+    results.write_bytes(damage(results.read_bytes()))
+    said = type_in(command, out)
+    assert said.exit_code == 2
+    assert str(out) in said.stderr
+    assert isinstance(said.exception, SystemExit)
+
+
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_a_damaged_summary_stops_no_report_without_its_name(damage, finished, tmp_path):
+    out = shutil.copytree(finished, tmp_path / "out")
+    summary = out / "summary.json"
+    summary.write_bytes(damage(summary.read_bytes()))
+    said = type_in("report", out)
+    assert said.exit_code in (0, 2)
+    assert said.exit_code == 0 or "summary.json" in said.stderr
+    assert said.exception is None or isinstance(said.exception, SystemExit)
+
+
+@pytest.mark.parametrize("damage", [b"\xff\xfe", b"\0\0", b"[pipe", b"= 1\n", b"[pipe]\n" * 2])
+@pytest.mark.parametrize("command", ["run", "explain", "trade"])
+def test_a_damaged_case_file_is_one_message_without_a_traceback(command, damage, case_file):
+    case_file.write_bytes(damage + CASE.encode())
+    said = type_in(command, case_file)
+    assert said.exit_code == 2
+    assert case_file.name in said.stderr.replace("\n", "")
+    assert isinstance(said.exception, SystemExit)
+    assert not (case_file.parent / "out").exists()
 
 
 @pytest.mark.parametrize("missing", ["checkpoint.h5", "results.h5", "case.toml"])

@@ -57,6 +57,30 @@ LAWS = {
 }
 
 
+@pytest.mark.parametrize("length", [1e-200, 1e-30, 1.0, 1e200])
+def test_the_length_of_a_direction_does_not_matter(length):
+    part = Motion(vibration=SHAKE | {"direction": [0.0, 3 * length, -4 * length]}).vibration[0]
+    assert part.axis == pytest.approx([0.0, 0.6, -0.8], abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("length", "holds", "fails", "told"),
+    [
+        (4.0, 0.318, 0.320, r"a slope of 0\.5, "),  # 2 pi A / L
+        (0.5, 0.031, 0.033, r"a curvature over that of the bore of 0\.52, "),  # (2 pi / L)^2 A R
+    ],
+)
+def test_an_axis_too_bent_for_sections_that_move_as_one_body_is_refused(length, holds, fails, told):
+    def bent(amplitude):
+        part = {"direction": "z", "period": 1.0, "amplitude": amplitude, "mode": 2}
+        pipe, liquid = PIPE | {"length": length}, WATER | {"model": "lagrangian"}
+        return case(motion={"vibration": part}, liquid=liquid, pipe=pipe)
+
+    bent(holds)
+    with pytest.raises(CaseError, match=told):
+        bent(fails)
+
+
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_velocity_and_acceleration_are_derivatives_of_the_displacement(law):
     motion, h = Motion(**law), 1e-4

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from mpsdem.case import Case, CaseError
 from mpsdem.contacts import Impact, Stiffness
-from mpsdem.plan import Clock, impacts, make_plan, spring_stiffness, terminal_velocity
+from mpsdem.plan import Clock, absurd_speed, impacts, make_plan, spring_stiffness, terminal_velocity
 from mpsdem.plan.scales import fastest_flow, turbulence
 
 WATER = {"model": "profile", "density": 1000.0, "kinematic_viscosity": 1e-6, "bulk_velocity": 1.0}
@@ -248,6 +248,40 @@ def test_a_speed_too_small_to_square_is_a_speed_nonetheless():
     assert make_plan(still).solid_step.value > 0
     with pytest.raises(CaseError, match="impact_speed"):
         make_plan(still.with_(solids={"contact": "linear_spring"}))
+
+
+def test_no_speed_is_absurd_that_weight_or_pump_can_drive():
+    steep = {"pipe": {"inclination": 1.57}, "liquid": {"model": "eulerian"}}
+    packed = {"count": None, "volume_fraction": 0.3, "arrangement": {"kind": "random"}}
+    crowd = case(solids=packed).with_(**steep)
+    # the bore as one falling column, whose friction balances the submerged weight
+    weight = 0.3 * (NODULES["density"] - 1000.0) * 9.807
+    falling = math.sqrt(2 * weight * 2 * crowd.pipe.radius / (0.02 * 1000.0))
+    assert absurd_speed(crowd) > falling
+    assert absurd_speed(case(liquid=WATER | {"bulk_velocity": 30.0})) > 2 * 30.0
+    slow = case(solids={"contact": "linear_spring", "impact_speed": 1e-3})
+    assert absurd_speed(slow) == pytest.approx(absurd_speed(case()))
+    assert absurd_speed(case(liquid=None)) == math.inf
+
+
+def test_a_shake_harder_than_any_that_was_measured_is_warned_of():
+    def warned(amplitude):
+        part = {"direction": "z", "frequency": 50.0, "amplitude": amplitude, "ramp": 0.0}
+        shaken = case().with_(motion={"vibration": [part]}, solids={"youngs_modulus": 1e9})
+        return any("acceleration" in warning for warning in make_plan(shaken).warnings)
+
+    assert warned(0.011)  # (100 pi)^2 0.011 = 1086 m/s2
+    assert not warned(0.009)
+
+
+def test_the_time_and_memory_of_a_fine_section_are_foreseen():
+    def planned(across):
+        fine = {"liquid": {"model": "eulerian"}, "fidelity": {"particle_spacing": 0.2 / across}}
+        return make_plan(case().with_(solids=None, **fine))
+
+    assert any("before the first step" in warning for warning in planned(60).warnings)
+    assert not any("before the first step" in warning for warning in planned(24).warnings)
+    assert planned(60).estimate.memory_bytes > 4e8
 
 
 def test_threads_are_left_out_where_they_would_lose():

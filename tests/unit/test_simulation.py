@@ -222,6 +222,22 @@ def test_a_diverged_run_names_the_solid_and_keeps_what_was_sound(tmp_path):
     assert np.isfinite(results.solids.position[:]).all()
 
 
+@pytest.mark.parametrize("model", ["eulerian", "profile"])
+def test_a_run_that_is_finite_and_absurd_is_stopped_and_keeps_its_frames(
+    model, tmp_path, monkeypatch
+):
+    """As a bed does that swings against its liquid: here by a bound below what is sound."""
+    monkeypatch.setattr("mpsdem.stages.build.absurd_speed", lambda _case: 0.4)
+    whose = "solids" if model == "profile" else "liquid"
+    moving = BEADS | {"arrangement": {"kind": "random", "velocity": [0.39, 0.0, 0.0]}}
+    scene = case(solids=moving, liquid=WATER | {"model": model}, end_time=0.5)
+    with pytest.raises(
+        SimulationDiverged, match=rf"mean speed, .* of the {whose} is out of bounds"
+    ):
+        Simulation(scene, tmp_path).run()
+    assert Results(tmp_path).summary["status"] == "diverged"
+
+
 def test_a_checkpoint_of_another_case_is_refused_with_the_keys_that_differ(tmp_path):
     Simulation(case(), tmp_path).run()
     heavier = case(solids=BEADS | {"density": 3000.0})

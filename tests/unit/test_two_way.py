@@ -161,7 +161,11 @@ def test_an_exchange_that_would_be_noise_is_refused(solids, radius, said):
     narrow = case(solids=solids, fidelity={"level": "quick", "smoothing_radius": radius})
     with pytest.raises(CaseError, match=rf"fidelity\.smoothing_radius = {radius}.*{said}"):
         make_plan(narrow)
-    make_plan(narrow.with_(fidelity={"coupling": "one-way"}))
+    one_way = {"coupling": "one-way"}
+    make_plan(narrow.with_(fidelity=one_way, solids={"drag": "schiller_naumann"}))
+    if "diameters" in said:  # and so would the void fraction be
+        with pytest.raises(CaseError, match=r"1\.5 largest diameters"):
+            make_plan(narrow.with_(fidelity=one_way))
 
 
 def test_solids_that_stir_a_liquid_at_rest_bring_eddies_into_the_plan():

@@ -24,6 +24,8 @@ from mpsdem.case.units import Quantity
 
 # Densest random packing of equal spheres; Scott & Kilgour (1969), doi:10.1088/0022-3727/2/6/311.
 _DENSEST_PACKING = 0.64
+_STEEPEST = 0.5  # [-] of a bent axis; the bore across it is then a tenth narrower than said
+_SHARPEST = 0.5  # [-] the inside of a bend is so much shorter; liquid is sane at 0.44, not at 0.7
 _SAMPLES = np.linspace(0.0, 1.0, 101)  # of the time, where a motion along the pipe shows
 
 
@@ -285,6 +287,7 @@ class Case(Part):
                     rule="must be even in a periodic pipe, whose outlet moves as its inlet does",
                     remedy=f"take {part.mode - 1} or {part.mode + 1}",
                 )
+        yield from self._a_bend_that_is_no_pipe()
         times = self.motion.times
         if times is not None and times[-1] < self.end_time:
             yield Problem(
@@ -296,6 +299,21 @@ class Case(Part):
             )
         if self.motion.moves_walls:
             yield from self._walls_that_cannot_move()
+
+    def _a_bend_that_is_no_pipe(self) -> Iterable[Problem]:
+        slope = self.motion.steepest(self.pipe.length)
+        bend = self.motion.sharpest(self.pipe.length) * self.pipe.radius
+        for name, value, largest in (
+            ("slope", slope, _STEEPEST),
+            ("curvature over that of the bore", bend, _SHARPEST),
+        ):
+            if value > largest:
+                yield Problem(
+                    field="motion.vibration",
+                    rule=f"bends the axis to a {name} of {value:.2g}, and cross-sections that move "
+                    f"as one body make a pipe of it up to {largest:g} only",
+                    remedy="a smaller amplitude, a lower mode or a longer pipe",
+                )
 
     def _walls_that_cannot_move(self) -> Iterable[Problem]:
         flexes, liquid = self.motion.flexes, self.liquid

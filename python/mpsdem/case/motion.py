@@ -137,6 +137,7 @@ class Vibration(Part):
         """Unit vector of the direction, (3,)."""
         given = self.direction
         vector = np.array(_AXES[given] if isinstance(given, str) else given)
+        vector /= np.abs(vector).max()  # whose squares are numbers, whatever its length
         unit: FloatArray = vector / np.linalg.norm(vector)
         return unit
 
@@ -171,9 +172,8 @@ class Vibration(Part):
             growth * sine + rate * grown * cosine,
             curve * sine + 2 * rate * growth * cosine - rate**2 * grown * sine,
         )
-        place, velocity, acceleration = (
-            np.multiply.outer(law, self.amplitude * self.axis) for law in laws
-        )
+        way = self.amplitude * self.axis
+        place, velocity, acceleration = (np.multiply.outer(law, way) for law in laws)
         return Movement(displacement=place, velocity=velocity, acceleration=acceleration)
 
 
@@ -360,6 +360,21 @@ class Motion(Part):
     def peak_speed(self) -> float:
         """Speed that the pipe does not exceed [m/s]."""
         return sum(speed for speed, _ in self._peaks)
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Acceleration that the pipe does not exceed [m/s2]."""
+        return sum(acceleration for _, acceleration in self._peaks)
+
+    def steepest(self, length: float) -> float:
+        """Slope of the axis that the modes of a pipe of that length [m] do not exceed [-]."""
+        return sum(part.amplitude * part.mode for part in self.vibration) * math.pi / length
+
+    def sharpest(self, length: float) -> float:
+        """Curvature of the axis that they do not exceed [1/m]."""
+        waves = [part.mode * math.pi / length for part in self.vibration]
+        bends = zip(self.vibration, waves, strict=True)
+        return sum(part.amplitude * wave**2 for part, wave in bends)
 
     @property
     def shortest_period(self) -> float:

@@ -34,6 +34,7 @@ from mpsdem.plan.scales import (
     lightness,
     liquid_model,
     mean_diameter,
+    needs_void_fraction,
     particle_count,
     pipe_profile,
     smoothing_radius,
@@ -46,6 +47,8 @@ from mpsdem.plan.scales import (
 SOFT = 0.05  # [-] overlap over radius above which contacts lose their meaning
 # Up to as many solids and particles, or nodes, threads cost more than they gain.
 _SERIAL, _SERIAL_NODES = 5000, 30_000
+_HARDEST = 1000.0  # [m/s2] of shaking, the largest that was found sane by all figures
+_LONG_SETUP = 20.0  # [s] before the first step, that is worth a warning
 _FRAMES = 8  # of a period of motion, that show it
 # What the estimate is made of, in processor time of a machine on which `mpsdem.trade.machine`
 # takes 0.031 s for its solids and 0.027 s for its liquid; fitted to runs of twenty kinds.
@@ -64,6 +67,7 @@ _PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.23e-6, 0.48e-6)}
 _FINER_SECTION, _SECTION, _FINE_SECTION = 0.85, 16, 24
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _SETUP_TIME = 2e-6  # [s] of one particle or node, once
+_BASIS_TIME, _BASIS_BYTES = 1.6e-9, 60  # [s] times the cube of a section's nodes; of their square
 # [s] of a frame, more with solids, and more with a liquid that is written out
 _FRAME_TIME, _SOLIDS_FRAME_TIME, _WRITTEN_FRAME_TIME = 3.5e-3, 6e-3, 5e-3
 _PARTICLE_FRAME_TIME = {"lagrangian": 2.5e-6, "eulerian": 1e-7}  # [s] of a particle or node in it
@@ -312,10 +316,6 @@ def _numbers(case: Case) -> Iterator[Number]:
         )
 
 
-def _needs_void_fraction(case: Case) -> bool:
-    return case.solids_count > 1 and solids_of(case).drag != "schiller_naumann"
-
-
 def _flow(case: Case) -> str:
     model = turbulence(case)
     if model is None:
@@ -410,7 +410,7 @@ def _coupling_stages(case: Case, turns: int) -> Iterator[Planned]:
             f"of the {kind} near a solid" if kind else f"it is a prescribed {flow}"
         )
     yield Planned(name="SampleLiquid", reason=reason)
-    if _needs_void_fraction(case):
+    if needs_void_fraction(case):
         reason = f"the drag law {solids.drag} depends on the share of liquid at a solid"
         yield Planned(name="FindVoidFraction", reason=reason)
     verb = "drags at" if solids.held else "carries"
@@ -452,7 +452,7 @@ def _left_out(case: Case) -> Iterator[Planned]:
     if liquid is not None:
         if not is_two_way(case):
             yield Planned(name="ExchangeMomentum", reason=_why_one_way(case))
-        if not _needs_void_fraction(case):
+        if not needs_void_fraction(case):
             alone = "a lone solid has no neighbors"
             reason = alone if case.solids_count == 1 else f"{solids.drag} takes no notice of it"
             yield Planned(name="FindVoidFraction", reason=reason)
@@ -532,15 +532,33 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
             )
             finer = max(0.0, (across - _SECTION) / (_FINE_SECTION - _SECTION))
             of_liquid *= 1 + _FINER_SECTION * finer
+        exchange += _basis_time(case)
         exchange += particles * (_SETUP_TIME + clock.frames * _PARTICLE_FRAME_TIME[model])
+    of_basis = _BASIS_BYTES * _section_nodes(case) ** 2
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
         wall_seconds=loop + around + exchange + (moving + of_liquid) / threads,
         solids_seconds=loop + around + moving,
         liquid_seconds=exchange + of_liquid,
-        memory_bytes=_BASE_BYTES + count * solid_bytes + particles * _PARTICLE_BYTES.get(model, 0),
+        memory_bytes=_BASE_BYTES
+        + of_basis
+        + count * solid_bytes
+        + particles * _PARTICLE_BYTES.get(model, 0),
         disk_bytes=frame_bytes * (clock.frames + 1),
     )
+
+
+def _section_nodes(case: Case) -> float:
+    """Nodes of a cross-section, about; 0 unless the liquid has such."""
+    if liquid_model(case) != "eulerian":
+        return 0.0
+    spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
+    return math.pi * (case.pipe.radius / spacing) ** 2
+
+
+def _basis_time(case: Case) -> float:
+    """What it takes to find the eigenbasis that a liquid on nodes solves its pressure with [s]."""
+    return _BASIS_TIME * _section_nodes(case) ** 3
 
 
 def _wall_law_warnings(case: Case) -> Iterator[str]:
@@ -564,6 +582,12 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
             f"a period of the pipe's motion, {period:.3g} s, has {period / case.output.every:.2g} "
             f"frames: take output.every <= {period / _FRAMES:.3g} s to see it"
         )
+    if (shaking := case.motion.peak_acceleration) > _HARDEST and solids is not None:
+        yield (
+            f"the pipe's acceleration reaches {shaking:.3g} m/s2: contacts went 0.12 of the radius "
+            f"deep at {_HARDEST:g} m/s2 and 0.44 at ten times that; shake it more gently, or take "
+            "stiffer solids and a smaller fidelity.rayleigh_fraction"
+        )
     if liquid is not None and liquid_model(case) == "lagrangian" and turbulence(case) is None:
         reynolds = fastest_flow(case) * 2 * case.pipe.radius / liquid.kinematic_viscosity
         if reynolds > _LIVELY:
@@ -580,6 +604,12 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         reynolds = fastest_flow(case) * 2 * case.pipe.radius / liquid.kinematic_viscosity
         if 2300 <= reynolds <= 4000:
             yield f"the flow is intermittent at a Reynolds number of {reynolds:.0f}; no law holds"
+        if (seconds := _basis_time(case)) > _LONG_SETUP:
+            yield (
+                f"the nodes of a section, {_section_nodes(case):.0f}, take {seconds / 60:.1f} min "
+                "before the first step, as the cube of their number does: take a wider "
+                "fidelity.particle_spacing, or liquid.model = 'lagrangian'"
+            )
         if liquid_model(case) == "eulerian":
             yield from _wall_law_warnings(case)
     if solids is None:
@@ -589,11 +619,6 @@ def _warnings(case: Case, speed: float) -> Iterator[str]:
         yield (
             f"the mean solid fraction {case.solids_fraction:.2g} is above {DILUTE:g}: "
             f"a real liquid would yield to the solids, so {consequence} here"
-        )
-    if liquid is not None and smoothing_radius(case) < 1.5 * solids.largest_diameter:
-        yield (
-            f"fidelity.smoothing_radius = {smoothing_radius(case):g} m is below 1.5 diameters: "
-            "the void fraction will be noisy"
         )
     if solids.held:
         return

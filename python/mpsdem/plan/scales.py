@@ -45,6 +45,7 @@ _LIGHT = 2.0
 # Stokes number of an impact below which the liquid takes a third and more of the rebound [-]: it
 # leaves exp(-35 / St) of the restitution. Legendre et al. (2005), doi:10.1063/1.2010527.
 _VISCOUS = 100.0
+_ABSURD = 5.0  # [-] speed over the fastest that a case names; 2 is the most of sound runs
 _STILL = 1e-30  # [m/s] below which nothing moves, and whose square is still a number
 LEAST_GAP = 3e-3  # [-] over the reduced radius, that lubrication takes rough surfaces to leave
 
@@ -168,6 +169,11 @@ def mean_diameter(solids: Solids) -> float:
     return float(np.cbrt(6 / math.pi * solids.mean_volume))
 
 
+def needs_void_fraction(case: Case) -> bool:
+    """Whether the drag depends on how much liquid is around a solid."""
+    return case.solids_count > 1 and solids_of(case).drag != "schiller_naumann"
+
+
 def smoothing_radius(case: Case) -> float:
     """Radius over which void fraction and exchange are averaged [m]; 0 without solids.
 
@@ -195,14 +201,17 @@ def smoothing_radius(case: Case) -> float:
         raise CaseError([problem])
     if given is None:
         return radius
-    least = max(1.5 * diameter, 2 * spacing)
-    if is_two_way(case) and given < least:
-        what = "1.5 largest diameters" if least > 2 * spacing else "two spacings of the liquid"
+    resolved = 2 * spacing if is_two_way(case) else 0.0
+    least = max(1.5 * diameter if needs_void_fraction(case) or resolved else 0.0, resolved)
+    if given < least:
+        what = "two spacings of the liquid, which feels the solids"
+        if least > resolved:
+            what = "1.5 largest diameters: a solid that fills more of it has no surroundings"
         problem = Problem(
             field="fidelity.smoothing_radius",
             value=given,
             unit="m",
-            rule=f"must be >= {least:g} m, {what}, where the liquid feels the solids",
+            rule=f"must be >= {least:g} m, {what}",
             remedy="leave it out",
         )
         raise CaseError([problem])
@@ -211,11 +220,15 @@ def smoothing_radius(case: Case) -> float:
 
 def impact_speed(case: Case) -> float:
     """Speed of the hardest collisions to expect [m/s], unless given."""
-    solids, pipe = case.solids, case.pipe
-    if solids is None:
+    if case.solids is None:
         return 0.0
-    if solids.impact_speed is not None:
-        return solids.impact_speed
+    if case.solids.impact_speed is not None:
+        return case.solids.impact_speed
+    return _expected_impact_speed(case)
+
+
+def _expected_impact_speed(case: Case) -> float:
+    solids, pipe = solids_of(case), case.pipe
     if isinstance(solids.arrangement, List):
         starts = np.array(solids.arrangement.velocities or [(0.0, 0.0, 0.0)])
     else:
@@ -423,16 +436,34 @@ def fastest_flow(case: Case) -> float:
     return max(abs(case.liquid.bulk_velocity), _driven_flow(case))
 
 
-def _driven_flow(case: Case) -> float:
-    """Bulk speed at which the friction of the walls alone balances a given gradient [m/s].
+def absurd_speed(case: Case) -> float:
+    """Speed that the mean energy of liquid and solids reaches only if steps are too long [m/s].
+
+    `_ABSURD` times the fastest that the case names: what solids hit with, the flow of the liquid
+    and of one that the weight of its solids drives, the motion of the pipe. Infinite in a dry case,
+    where nothing holds a solid that slides.
+    """
+    if case.liquid is None:
+        return math.inf
+    fastest = max(fastest_flow(case), case.motion.peak_speed)
+    if case.solids is not None:
+        pull = abs(case.solids.density - case.liquid.density) * case.gravity  # [Pa/m]
+        pull *= case.solids_fraction * abs(math.sin(case.pipe.inclination))
+        fastest = max(fastest, _expected_impact_speed(case), _driven_flow(case, pull))
+    return _ABSURD * fastest if fastest > _STILL else math.inf
+
+
+def _driven_flow(case: Case, pull: float = 0.0) -> float:
+    """Bulk speed at which the friction of the walls balances gradient and `pull` [Pa/m] [m/s].
 
     Hagen-Poiseuille's, else Colebrook's, which is explicit where the gradient is known:
     U = sqrt(2 D G / rho) / sqrt(f), Re sqrt(f) = D sqrt(2 D G / rho) / nu.
     """
     liquid, bore = case.liquid, 2 * case.pipe.radius
-    if liquid is None or not liquid.pressure_gradient:
+    gradient = pull + abs((liquid and liquid.pressure_gradient) or 0.0)  # [Pa/m]
+    if liquid is None or gradient == 0:
         return 0.0
-    force = abs(liquid.pressure_gradient) / liquid.density  # [m/s2]
+    force = gradient / liquid.density  # [m/s2]
     laminar = force * bore**2 / (32 * liquid.kinematic_viscosity)
     if laminar <= (fastest := LAMINAR_LIMIT * liquid.kinematic_viscosity / bore):
         return laminar

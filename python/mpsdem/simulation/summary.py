@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -74,9 +75,13 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
     if plan.case.solids is not None:
         values["plug_time"] = None if math.isnan(state.plug_time) else state.plug_time
         values["plug_position"] = None if math.isnan(state.plug_time) else state.plug_position
-    errors = [error for error in _momentum_errors(plan, state, results) if error is not None]
-    values["momentum_error"] = max(errors, default=None)
-    values["warnings"] = [*plan.warnings, *_warnings(plan, values)]
+    ledger = _liquid_ledger(plan, results)
+    errors = [None if ledger is None else ledger.error]
+    if plan.case.solids is not None and not plan.case.solids.held:
+        errors.append(_solids_momentum_error(plan, state, results))
+    values["momentum_error"] = max((e for e in errors if e is not None), default=None)
+    of_ledger = () if ledger is None else ledger.warnings()
+    values["warnings"] = [*plan.warnings, *_warnings(plan, values), *of_ledger]
     return values, _reasons(plan, values)
 
 
@@ -101,6 +106,7 @@ _SOLIDS_KEYS = (
     "plug_time",
     "plug_position",
 )
+_LARGEST_MOMENTUM_ERROR = 0.02  # [-] of the friction, above which it is worth a warning
 # Share of the drags beyond the range of their law that is worth a warning [-].
 _FAR_OUTSIDE = 0.05
 
@@ -313,17 +319,40 @@ def _no_ledger(plan: Plan) -> str:
     return "nothing took an impulse at the wall"
 
 
-def _momentum_errors(plan: Plan, state: State, results: Results) -> Iterator[float | None]:
-    """Impulse that nothing explains over that of the walls: of the liquid, and of the solids."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Ledger:
+    """Axial momentum of a liquid over a run [Pa s/m], and the time of it [s]."""
+
+    unexplained: float
+    friction: float
+    exchanged: float  # with solids, whatever its direction
+    time: float
+
+    @property
+    def error(self) -> float | None:
+        """What nothing explains over what walls or solids gave, the larger; None without either.
+
+        Solids that fall through a liquid at rest stir it with their drag across the pipe, while the
+        friction along the pipe is a small difference of eddies.
+        """
+        scale = max(abs(self.friction), self.exchanged)
+        return abs(self.unexplained) / scale if scale > 0 else None
+
+    def warnings(self) -> Iterator[str]:
+        lost, friction = abs(self.unexplained), abs(self.friction)
+        if 0 < friction < lost / _LARGEST_MOMENTUM_ERROR:
+            yield (
+                f"{lost / self.time:.2g} Pa/m of the liquid's momentum is unexplained, of "
+                f"{friction / self.time:.2g} Pa/m of friction and {self.exchanged / self.time:.2g} "
+                "Pa/m of drag of solids"
+            )
+
+
+def _liquid_ledger(plan: Plan, results: Results) -> _Ledger | None:
+    """That of a liquid that keeps one."""
     walls_push = plan.case.pipe.has_plate or plan.case.motion.flexes
-    if plan.liquid_model in COMPUTED and not walls_push:
-        yield _liquid_momentum_error(plan, results)
-    if plan.case.solids is not None and not plan.case.solids.held:
-        yield _solids_momentum_error(plan, state, results)
-
-
-def _liquid_momentum_error(plan: Plan, results: Results) -> float | None:
-    """Axial impulse on the liquid that nothing explains, over that of friction, if any."""
+    if plan.liquid_model not in COMPUTED or walls_push:
+        return None
     liquid, numbers = plan.case.liquid, results.diagnostics
     assert liquid is not None
     # the first step makes room for the solids, whose share in the liquid is not known before
@@ -341,11 +370,23 @@ def _liquid_momentum_error(plan: Plan, results: Results) -> float | None:
         flux = numbers["liquid_flux"]
         given = impulse("pressure_gradient") - impulse("pressure_gradient_solids")
         unexplained = liquid.density * float(flux[-1] - flux[first]) - given + friction
-    return abs(unexplained / friction) if friction != 0 else None
+    exchanged = 0.0
+    if plan.two_way:
+        force = np.linalg.norm(numbers["drag_force"][first + 1 :], axis=-1)
+        exchanged = float(force @ interval) / plan.case.pipe.bore_volume
+    return _Ledger(
+        unexplained=unexplained,
+        friction=friction,
+        exchanged=exchanged,
+        time=float(interval.sum()),
+    )
 
 
 def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float | None:
-    """What solids gained, less what weight, shaking, liquid and walls gave; None without walls."""
+    """What solids gained, less what weight, shaking, liquid and walls gave.
+
+    Over what walls or the liquid gave, the larger; None without either.
+    """
     case, liquid, solids = plan.case, plan.case.liquid, state.solids
     assert case.solids is not None
     mass = case.solids.density * 4 / 3 * math.pi * results.solids.radius**3
@@ -363,4 +404,5 @@ def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float 
     unexplained = gained - weight - state.drag_impulse - solids.wall_impulse
     friction = clear_gradient(case) * case.pipe.bore_volume * state.time
     of_walls = abs(friction) + float(np.linalg.norm(solids.wall_impulse))
-    return float(np.linalg.norm(unexplained)) / of_walls if of_walls > 0 else None
+    scale = max(of_walls, float(np.linalg.norm(state.drag_impulse)))
+    return float(np.linalg.norm(unexplained)) / scale if scale > 0 else None

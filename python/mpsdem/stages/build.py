@@ -16,6 +16,7 @@ from mpsdem.liquids import bending, build_liquid
 from mpsdem.plan import (
     DRAG_LAWS,
     Plan,
+    absurd_speed,
     gravity,
     impacts,
     lubrication,
@@ -144,6 +145,7 @@ def build_stages(case: Case, plan: Plan, writer: ResultsWriter) -> Iterator[Stag
                 yield Record(
                     writer=writer,
                     steps_per_frame=plan.clock.steps_per_frame,
+                    absurd_speed=absurd_speed(case),
                     pipe=pipe,
                     motion=case.motion,
                     gravity=gravity(case),

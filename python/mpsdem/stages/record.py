@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 from mpsdem.case import Motion, Pipe
 from mpsdem.liquids import section_count
 from mpsdem.results import ResultsWriter
-from mpsdem.stages.state import FloatArray, State, check
+from mpsdem.stages.state import FloatArray, SimulationDiverged, State, check
 
 Fields = dict[str, ArrayLike]
 
@@ -35,6 +36,7 @@ class Record:
     name: ClassVar[str] = "Record"
     writer: ResultsWriter
     steps_per_frame: int
+    absurd_speed: float  # [m/s] of mean energy, that no sound run comes to
     pipe: Pipe
     motion: Motion
     gravity: FloatArray  # (3,) [m/s2]
@@ -56,6 +58,8 @@ class Record:
             diagnostics |= of_liquid
             self._split_gradient(state, diagnostics)
             diagnostics["liquid_flux"] = self._liquid_flux(state, diagnostics)
+        if interval > 0:
+            self._require_sane(state, diagnostics)
         if state.axis is None:
             self._energy(state, diagnostics, interval)
         if not self.motion.at_rest:
@@ -67,6 +71,24 @@ class Record:
         state.frame_time = state.time
         for name in _SINCE_LAST_FRAME:
             setattr(state, name, type(getattr(state, name))())
+
+    def _require_sane(self, state: State, numbers: Fields) -> None:
+        """Stop a run that is finite, and no physics: with more energy than anything can give it."""
+        squares = {"liquid": 2 * np.asarray(numbers.get("liquid_kinetic_energy", 0.0)).item()}
+        if state.population is not None:
+            energy = np.asarray(numbers["kinetic_energy"]).item()
+            squares["solids"] = 2 * energy / float(state.solids.mass.sum())
+        whose = max(squares, key=squares.__getitem__)
+        if (speed := math.sqrt(squares[whose])) > self.absurd_speed:
+            raise SimulationDiverged(
+                step=state.step,
+                time=state.time,
+                field=f"mean speed, {speed:.3g} m/s where {self.absurd_speed:.3g} m/s is absurd,",
+                whose=f"the {whose}",
+                remedy="let a packed bed in a liquid that flows start with its speed "
+                "(solids.arrangement.velocity); else a smaller fidelity.liquid_step and "
+                "fidelity.coupling_step",
+            )
 
     def _solids(self, state: State, interval: float) -> tuple[Fields, Fields]:
         """Fields of the solids, and their numbers; forces as means since the last frame."""

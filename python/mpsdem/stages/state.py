@@ -17,13 +17,20 @@ FloatArray = NDArray[np.float64]
 
 
 class SimulationDiverged(RuntimeError):  # noqa: N818 - what happened, not what is wrong
-    """The run has no sound state any more; `solid` is None where it was the liquid."""
+    """The run has no sound state any more; `solid` is that of which it was seen, if of one."""
 
     def __init__(
-        self, *, step: int, time: float, field: str, solid: int | None, remedy: str
+        self,
+        *,
+        step: int,
+        time: float,
+        field: str,
+        remedy: str,
+        solid: int | None = None,
+        whose: str = "the liquid",
     ) -> None:
         self.step, self.time, self.field, self.solid = step, time, field, solid
-        whose = "the liquid" if solid is None else f"solid {solid}"
+        whose = whose if solid is None else f"solid {solid}"
         super().__init__(
             f"diverged at t = {time:.6g} s (step {step}): the {field} of {whose} is out of bounds. "
             f"Remedy: {remedy}"

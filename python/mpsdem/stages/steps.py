@@ -39,7 +39,6 @@ class AdvanceLiquid:
                 step=state.step,
                 time=state.time,
                 field="pressure or velocity",
-                solid=None,
                 remedy=remedy,
             )
 

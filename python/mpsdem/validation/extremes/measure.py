@@ -11,7 +11,7 @@ import h5py  # type: ignore[import-untyped]
 import numpy as np
 
 from mpsdem.liquids import CLIPS
-from mpsdem.plan import Plan
+from mpsdem.plan import Plan, fastest_flow
 from mpsdem.results import Results
 
 #: Fields that hold NaN where nothing is.
@@ -73,9 +73,9 @@ def measure(plan: Plan, results: Results) -> Figures:
 
 
 def named_speed(plan: Plan) -> float:
-    """Fastest that the case names: bulk or terminal velocity, or that of the start [m/s]."""
-    liquid = plan.case.liquid
-    return max(plan.impact_speed, 0.0 if liquid is None else abs(liquid.bulk_velocity))
+    """Fastest that the case names: of its flow, its settling or its start [m/s]."""
+    flow = 0.0 if plan.case.liquid is None else fastest_flow(plan.case)
+    return max(plan.impact_speed, flow)
 
 
 def _fastest(results: Results) -> float:

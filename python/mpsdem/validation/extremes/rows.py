@@ -135,8 +135,18 @@ def _solids() -> Iterator[Row]:
         "0.57, random close packing": {"solids": packed(0.57)},
     }
     yield from _each("solid fraction", crowds, steps=50)
-    fine = {"pipe": {"length": 0.6 * BORE}, "solids": packed(0.6) | {"diameter": _DIAMETER / 2}}
-    yield from _each("solid fraction", {"0.6 in twenty diameters": fine}, COMPUTED, steps=20)
+    fine: dict[str, Any] = {
+        "pipe": {"length": 0.6 * BORE},
+        "solids": packed(0.6) | {"diameter": _DIAMETER / 2},
+    }
+    packed_bed = "0.6 in twenty diameters"
+    yield from _each("solid fraction", {packed_bed: fine}, (EULERIAN,), steps=20)
+    # at rest in a liquid at 1 m/s, whose first steps bring 560 kPa/m
+    yield from _each(
+        "solid fraction", {packed_bed: fine}, (LAGRANGIAN,), steps=20, outcome="stopped"
+    )
+    moving = fine | {"solids": fine["solids"] | {"arrangement": {"velocity": (1.0, 0.0, 0.0)}}}
+    yield from _each("solid fraction", {f"{packed_bed}, moving": moving}, (LAGRANGIAN,), steps=20)
     dense = {"solids": packed(0.6)}
     yield from _each(
         "solid fraction", {"0.6 in ten diameters": dense}, (PROFILE,), outcome="refused"
@@ -175,7 +185,11 @@ def _flow() -> Iterator[Row]:
     }
     yield from _each("viscosity", viscosities)
     speeds = {
-        f"{speed * BORE / 1e-6:g}": {"liquid": {"bulk_velocity": speed}} for speed in (1e-7, 100.0)
+        f"{speed * BORE / 1e-6:g}": {
+            "liquid": {"bulk_velocity": speed},
+            "solids": {"youngs_modulus": modulus},
+        }
+        for speed, modulus in ((1e-7, 1e7), (100.0, 1e10))  # [m/s, Pa]
     }
     yield from _each("Reynolds number", speeds)
     directions = {f"{speed:g} m/s": {"liquid": {"bulk_velocity": speed}} for speed in (0.0, -1.0)}
@@ -232,14 +246,17 @@ def _motion() -> Iterator[Row]:
         "50 Hz, 1 mm, across": shaken("z", 50.0, 1e-3),
         "1 Hz, one bore, across": shaken("z", 1.0, BORE),
         "1 Hz, one bore, along": shaken("x", 1.0, BORE),
+        "50 Hz, 10 mm, across": shaken("z", 50.0, 0.1 * BORE),
         "50 Hz, one bore, across": shaken("z", 50.0, BORE) | {"solids": {"youngs_modulus": 1e8}},
     }
     yield from _each("vibration", parts)
     bent = {
         "50 Hz, 1 mm, mode 2": shaken("z", 50.0, 1e-3, mode=2),
-        "1 Hz, one bore, mode 2": shaken("z", 1.0, BORE, mode=2),
+        "1 Hz, a fifth of the bore, mode 2": shaken("z", 1.0, 0.2 * BORE, mode=2),
     }
     yield from _each("vibration", bent, (LAGRANGIAN,))
+    steep = {"1 Hz, one bore, mode 2": shaken("z", 1.0, BORE, mode=2)}
+    yield from _each("vibration", steep, (LAGRANGIAN,), outcome="refused")
 
 
 def _numerics() -> Iterator[Row]:
