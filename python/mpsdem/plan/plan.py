@@ -67,7 +67,7 @@ _PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.23e-6, 0.48e-6)}
 _FINER_SECTION, _SECTION, _FINE_SECTION = 0.85, 16, 24
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _SETUP_TIME = 2e-6  # [s] of one particle or node, once
-_BASIS_TIME, _BASIS_BYTES = 1.6e-9, 60  # [s] times the cube of a section's nodes; of their square
+_BASIS_TIME, _BASIS_BYTES = 2.6e-10, 45  # [s] times the cube of a section's nodes; of their square
 # [s] of a frame, more with solids, and more with a liquid that is written out
 _FRAME_TIME, _SOLIDS_FRAME_TIME, _WRITTEN_FRAME_TIME = 3.5e-3, 6e-3, 5e-3
 _PARTICLE_FRAME_TIME = {"lagrangian": 2.5e-6, "eulerian": 1e-7}  # [s] of a particle or node in it
