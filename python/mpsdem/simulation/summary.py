@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mpsdem.analysis import (
     Average,
+    Ledgers,
     bed_height,
     extent,
     insitu_concentration,
+    ledgers,
     period_of_motion,
     time_average,
 )
@@ -76,11 +77,11 @@ def summarize(plan: Plan, state: State, results: Results) -> tuple[dict[str, Any
         values["plug_time"] = None if math.isnan(state.plug_time) else state.plug_time
         values["plug_position"] = None if math.isnan(state.plug_time) else state.plug_position
     ledger = _liquid_ledger(plan, results)
-    errors = [None if ledger is None else ledger.error]
+    errors = [None if ledger is None else _liquid_momentum_error(ledger)]
     if plan.case.solids is not None and not plan.case.solids.held:
         errors.append(_solids_momentum_error(plan, state, results))
     values["momentum_error"] = max((e for e in errors if e is not None), default=None)
-    of_ledger = () if ledger is None else ledger.warnings()
+    of_ledger = () if ledger is None else _momentum_warnings(ledger)
     values["warnings"] = [*plan.warnings, *_warnings(plan, values), *of_ledger]
     return values, _reasons(plan, values)
 
@@ -319,74 +320,34 @@ def _no_ledger(plan: Plan) -> str:
     return "nothing took an impulse at the wall"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Ledger:
-    """Axial momentum of a liquid over a run [Pa s/m], and the time of it [s]."""
-
-    unexplained: float
-    friction: float
-    exchanged: float  # with solids, whatever its direction
-    time: float
-
-    @property
-    def error(self) -> float | None:
-        """What nothing explains over what walls or solids gave, the larger; None without either.
-
-        Solids that fall through a liquid at rest stir it with their drag across the pipe, while the
-        friction along the pipe is a small difference of eddies.
-        """
-        scale = max(abs(self.friction), self.exchanged)
-        return abs(self.unexplained) / scale if scale > 0 else None
-
-    def warnings(self) -> Iterator[str]:
-        lost, friction = abs(self.unexplained), abs(self.friction)
-        if 0 < friction < lost / _LARGEST_MOMENTUM_ERROR:
-            yield (
-                f"{lost / self.time:.2g} Pa/m of the liquid's momentum is unexplained, of "
-                f"{friction / self.time:.2g} Pa/m of friction and {self.exchanged / self.time:.2g} "
-                "Pa/m of drag of solids"
-            )
-
-
-def _liquid_ledger(plan: Plan, results: Results) -> _Ledger | None:
+def _liquid_ledger(plan: Plan, results: Results) -> Ledgers | None:
     """That of a liquid that keeps one."""
     walls_push = plan.case.pipe.has_plate or plan.case.motion.flexes
     if plan.liquid_model not in COMPUTED or walls_push:
         return None
-    liquid, numbers = plan.case.liquid, results.diagnostics
-    assert liquid is not None
     # the first step makes room for the solids, whose share in the liquid is not known before
-    first = 1 if plan.two_way and len(results.time) > 2 else 0
-    interval = np.diff(results.time[first:])
+    return ledgers(results, first=1 if plan.two_way and len(results.time) > 2 else 0)
 
-    def impulse(name: str) -> float:
-        return float(numbers[name][first + 1 :] @ interval)
 
-    friction = impulse("pressure_gradient_friction")
-    if plan.liquid_model == "eulerian":
-        # its bulk velocity holds that of the wall's nodes, which no force changes
-        unexplained = impulse("liquid_unexplained")
-    else:
-        flux = numbers["liquid_flux"]
-        given = impulse("pressure_gradient") - impulse("pressure_gradient_solids")
-        unexplained = liquid.density * float(flux[-1] - flux[first]) - given + friction
-    exchanged = 0.0
-    if plan.two_way:
-        force = np.linalg.norm(numbers["drag_force"][first + 1 :], axis=-1)
-        exchanged = float(force @ interval) / plan.case.pipe.bore_volume
-    return _Ledger(
-        unexplained=unexplained,
-        friction=friction,
-        exchanged=exchanged,
-        time=float(interval.sum()),
-    )
+def _liquid_momentum_error(ledger: Ledgers) -> float | None:
+    """Axial impulse on the liquid that nothing explains, over that of friction, if any."""
+    friction = ledger.friction[-1]
+    return abs(float(ledger.unexplained[-1] / friction)) if friction != 0 else None
+
+
+def _momentum_warnings(ledger: Ledgers) -> Iterator[str]:
+    lost, friction = abs(ledger.unexplained[-1]), abs(ledger.friction[-1])
+    if 0 < friction < lost / _LARGEST_MOMENTUM_ERROR:
+        time = ledger.time[-1] - ledger.time[0]
+        yield (
+            f"{lost / time:.2g} Pa/m of the liquid's momentum is unexplained, of "
+            f"{friction / time:.2g} Pa/m of friction and {ledger.exchanged[-1] / time:.2g} Pa/m "
+            "of drag of solids"
+        )
 
 
 def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float | None:
-    """What solids gained, less what weight, shaking, liquid and walls gave.
-
-    Over what walls or the liquid gave, the larger; None without either.
-    """
+    """What solids gained, less what weight, shaking, liquid and walls gave; None without walls."""
     case, liquid, solids = plan.case, plan.case.liquid, state.solids
     assert case.solids is not None
     mass = case.solids.density * 4 / 3 * math.pi * results.solids.radius**3
@@ -404,5 +365,4 @@ def _solids_momentum_error(plan: Plan, state: State, results: Results) -> float 
     unexplained = gained - weight - state.drag_impulse - solids.wall_impulse
     friction = clear_gradient(case) * case.pipe.bore_volume * state.time
     of_walls = abs(friction) + float(np.linalg.norm(solids.wall_impulse))
-    scale = max(of_walls, float(np.linalg.norm(state.drag_impulse)))
-    return float(np.linalg.norm(unexplained)) / scale if scale > 0 else None
+    return float(np.linalg.norm(unexplained)) / of_walls if of_walls > 0 else None

@@ -10,6 +10,7 @@ from typing import Any
 import h5py  # type: ignore[import-untyped]
 import numpy as np
 
+from mpsdem.analysis import ledgers
 from mpsdem.liquids import CLIPS
 from mpsdem.plan import Plan, fastest_flow
 from mpsdem.results import Results
@@ -43,7 +44,9 @@ class Figures:
         Largest of the liquid's number density [-].
     clips : int
         Whatever was cut to its bounds, solids and liquid together.
-    momentum_error, exchange_error, mass_error : float or None
+    momentum_error : float or None
+        Impulse that nothing explains, over what walls or solids give, the larger [-].
+    exchange_error, mass_error : float or None
         As in the summary [-].
     """
 
@@ -66,10 +69,24 @@ def measure(plan: Plan, results: Results) -> Figures:
         overlap=None if overlap is None else float(overlap),
         scatter=None if scatter is None else float(scatter),
         clips=_clips(summary),
-        momentum_error=summary["momentum_error"],
+        momentum_error=_momentum_error(results),
         exchange_error=summary["exchange_error"],
         mass_error=summary["mass_error"],
     )
+
+
+def _momentum_error(results: Results) -> float | None:
+    """What the summary has over friction, over what walls or solids give, if that is larger [-].
+
+    Solids that fall through a liquid at rest stir it with their drag across the pipe, while the
+    friction along the pipe is a small difference of eddies.
+    """
+    error: float | None = results.summary["momentum_error"]
+    if error is None or "pressure_gradient_friction" not in results.diagnostics:
+        return error
+    kept = ledgers(results)
+    friction = abs(float(kept.friction[-1]))
+    return error * friction / max(friction, float(kept.exchanged[-1]))
 
 
 def named_speed(plan: Plan) -> float:
