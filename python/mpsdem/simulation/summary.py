@@ -107,6 +107,7 @@ _SOLIDS_KEYS = (
     "plug_position",
 )
 _LARGEST_MOMENTUM_ERROR = 0.02  # [-] of the friction, above which it is worth a warning
+_NOTHING = 1e-30  # [Pa s/m] of momentum, below which nothing moves
 # Share of the drags beyond the range of their law that is worth a warning [-].
 _FAR_OUTSIDE = 0.05
 
@@ -336,11 +337,11 @@ class _Ledger:
         friction along the pipe is a small difference of eddies.
         """
         scale = max(abs(self.friction), self.exchanged)
-        return abs(self.unexplained) / scale if scale > 0 else None
+        return abs(self.unexplained) / scale if scale > _NOTHING else None
 
     def warnings(self) -> Iterator[str]:
         lost, friction = abs(self.unexplained), abs(self.friction)
-        if 0 < friction < lost / _LARGEST_MOMENTUM_ERROR:
+        if _NOTHING < friction < lost / _LARGEST_MOMENTUM_ERROR:
             yield (
                 f"{lost / self.time:.2g} Pa/m of the liquid's momentum is unexplained, of "
                 f"{friction / self.time:.2g} Pa/m of friction and {self.exchanged / self.time:.2g} "
