@@ -108,6 +108,7 @@ _SOLIDS_KEYS = (
     "plug_position",
 )
 _LARGEST_MOMENTUM_ERROR = 0.02  # [-] of the friction, above which it is worth a warning
+_NOTHING = 1e-30  # [Pa s/m] of momentum, below which nothing moves
 # Share of the drags beyond the range of their law that is worth a warning [-].
 _FAR_OUTSIDE = 0.05
 
@@ -331,13 +332,13 @@ def _liquid_ledger(plan: Plan, results: Results) -> Ledgers | None:
 
 def _liquid_momentum_error(ledger: Ledgers) -> float | None:
     """Axial impulse on the liquid that nothing explains, over that of friction, if any."""
-    friction = ledger.friction[-1]
-    return abs(float(ledger.unexplained[-1] / friction)) if friction != 0 else None
+    friction = abs(float(ledger.friction[-1]))
+    return abs(float(ledger.unexplained[-1])) / friction if friction > _NOTHING else None
 
 
 def _momentum_warnings(ledger: Ledgers) -> Iterator[str]:
     lost, friction = abs(ledger.unexplained[-1]), abs(ledger.friction[-1])
-    if 0 < friction < lost / _LARGEST_MOMENTUM_ERROR:
+    if _NOTHING < friction < lost / _LARGEST_MOMENTUM_ERROR:
         time = ledger.time[-1] - ledger.time[0]
         yield (
             f"{lost / time:.2g} Pa/m of the liquid's momentum is unexplained, of "
