@@ -86,7 +86,8 @@ def _momentum_error(results: Results) -> float | None:
         return error
     kept = ledgers(results)
     friction = abs(float(kept.friction[-1]))
-    return error * friction / max(friction, float(kept.exchanged[-1]))
+    given = max(friction, float(kept.exchanged[-1]))
+    return error * friction / given if given > 0 else error
 
 
 def named_speed(plan: Plan) -> float:
