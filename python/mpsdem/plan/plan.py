@@ -57,14 +57,16 @@ _SOLID_TIME = 6e-7  # [s] what a turn does with one solid but moving it: void fr
 _NEIGHBOR_TIME = 9e-9  # [s] one neighbor of one solid, for the void fraction
 # [s] exchange of one solid with one point of the liquid: in a step of the liquid, in a turn, and
 # its memory
-_FOOTPRINT_TIME, _RESPONSE_TIME, _FOOTPRINT_BYTES = 5.5e-8, 5e-9, 24
+_FOOTPRINT_TIME, _RESPONSE_TIME, _FOOTPRINT_BYTES = 4.5e-8, 5e-9, 24
 _SAMPLE_TIME = 2e-8  # [s] one point of a computed liquid at one solid that it does not feel
 _SOLID_BYTES = 2000  # memory of one solid with its contacts and neighbors
 # [s] one step of one liquid particle or node, its pressure included; and where it feels solids, for
-# which nodes part a step in two. Their pressure goes through a basis of all nodes of a section,
-# which costs more from 16 spacings across on: so much more at 24 [-].
-_PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.23e-6, 0.48e-6)}
-_FINER_SECTION, _SECTION, _FINE_SECTION = 0.85, 16, 24
+# which nodes part a step in two.
+_PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.22e-6, 0.45e-6)}
+# Spacings across from which on each further one makes a step on nodes dearer, and by how much [-]:
+# its pressure goes through a basis of all nodes of a section, and solids make it part more often.
+_FINE_SECTION = {False: (24, 0.036), True: (16, 0.075)}
+_LAMINAR = 2.7  # [-] a laminar step of particles over a turbulent one: viscosity by least squares
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _SETUP_TIME = 2e-6  # [s] of one particle or node, once
 _BASIS_TIME, _BASIS_BYTES = 2.6e-10, 45  # [s] times the cube of a section's nodes; of their square
@@ -513,7 +515,7 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
             * (2 * smoothing_radius(case) / mean_diameter(solids_of(case))) ** 3
         )
         around = count * steps * (_SOLID_TIME + neighbors * _NEIGHBOR_TIME)
-    exchange = 0.0
+    exchange, of_output = 0.0, 0.0
     if count and particles:
         spacing = case.fidelity.resolved_particle_spacing(case.pipe.radius)
         footprint = 4 / 3 * math.pi * (smoothing_radius(case) / spacing) ** 3
@@ -526,20 +528,22 @@ def _estimate(case: Case, clock: Clock, turns: int, threads: int) -> Estimate:
             around += count * footprint * steps * _SAMPLE_TIME
     if particles:
         of_liquid = particles * steps / turns * _PARTICLE_TIME[model][is_two_way(case)]
+        if model == "lagrangian" and turbulence(case) is None:
+            of_liquid *= _LAMINAR
         if model == "eulerian":
             across = (
                 2 * case.pipe.radius / case.fidelity.resolved_particle_spacing(case.pipe.radius)
             )
-            finer = max(0.0, (across - _SECTION) / (_FINE_SECTION - _SECTION))
-            of_liquid *= 1 + _FINER_SECTION * finer
-        exchange += _basis_time(case)
-        exchange += particles * (_SETUP_TIME + clock.frames * _PARTICLE_FRAME_TIME[model])
+            fine, dearer = _FINE_SECTION[is_two_way(case)]
+            of_liquid *= 1 + dearer * max(0.0, across - fine)
+        frames = clock.frames * _PARTICLE_FRAME_TIME[model]
+        of_output = _basis_time(case) + particles * (_SETUP_TIME + frames)
     of_basis = _BASIS_BYTES * _section_nodes(case) ** 2
     frame_bytes = count * 8 * (9 + (7 if case.liquid else 0)) + 100
     return Estimate(
-        wall_seconds=loop + around + exchange + (moving + of_liquid) / threads,
+        wall_seconds=loop + around + of_output + (moving + exchange + of_liquid) / threads,
         solids_seconds=loop + around + moving,
-        liquid_seconds=exchange + of_liquid,
+        liquid_seconds=exchange + of_liquid + of_output,
         memory_bytes=_BASE_BYTES
         + of_basis
         + count * solid_bytes
