@@ -498,7 +498,7 @@ def test_the_shipped_table_holds_every_scene_with_its_spacings():
         assert all(math.isfinite(e) for by_name in errors.values() for e in by_name.values())
 
 
-@pytest.mark.parametrize("name", ["case A", "case B"])
+@pytest.mark.parametrize("name", ["friction", "case A", "case B"])
 def test_the_plan_foresees_what_was_measured_within_a_factor_of_one_and_a_half(name):
     table, case = shipped_table(), SCENES[name]().case
     settings = {str(setting): setting for setting in settings_of(case)[0]}

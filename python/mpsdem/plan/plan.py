@@ -52,7 +52,7 @@ _LONG_SETUP = 20.0  # [s] before the first step, that is worth a warning
 _FRAMES = 8  # of a period of motion, that show it
 # What the estimate is made of, in processor time of a machine on which `mpsdem.trade.machine`
 # takes 0.031 s for its solids and 0.027 s for its liquid; fitted to runs of twenty kinds.
-_CALL_TIME = {True: 3.5e-4, False: 2e-4}  # [s] one turn of the time loop, with solids and without
+_CALL_TIME = {True: 5e-4, False: 4e-4}  # [s] one turn of the time loop, with solids and without
 _SOLID_TIME = 6e-7  # [s] what a turn does with one solid but moving it: void fraction, drag
 _NEIGHBOR_TIME = 9e-9  # [s] one neighbor of one solid, for the void fraction
 # [s] exchange of one solid with one point of the liquid: in a step of the liquid, in a turn, and
@@ -66,7 +66,7 @@ _PARTICLE_TIME = {"lagrangian": (2e-6, 3.4e-6), "eulerian": (0.22e-6, 0.45e-6)}
 # Spacings across from which on each further one makes a step on nodes dearer, and by how much [-]:
 # its pressure goes through a basis of all nodes of a section, and solids make it part more often.
 _FINE_SECTION = {False: (24, 0.036), True: (16, 0.075)}
-_LAMINAR = 2.7  # [-] a laminar step of particles over a turbulent one: viscosity by least squares
+_LAMINAR = 3.0  # [-] a laminar step of particles over a turbulent one: viscosity by least squares
 _PARTICLE_BYTES = {"lagrangian": 1100, "eulerian": 400}
 _SETUP_TIME = 2e-6  # [s] of one particle or node, once
 _BASIS_TIME, _BASIS_BYTES = 2.6e-10, 45  # [s] times the cube of a section's nodes; of their square
