@@ -10,6 +10,7 @@
 #include <complex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace mpsdem::linear {
 
@@ -87,7 +88,7 @@ Modes::Modes(const ParityClasses::Class& of_class, const Matrix& whole, Real sca
     const Eigen::EigenSolver<Eigen::MatrixXd> eigen(condensed);
     if (eigen.info() != Eigen::Success)
         throw std::runtime_error("CrossSectionSolver: no eigenbasis was found");
-    const Eigen::MatrixXd vectors = eigen.pseudoEigenvectors();
+    const Eigen::MatrixXd& vectors = eigen.pseudoEigenvectors();
     to_modes = scale * vectors.inverse();
     wall_to_modes = -to_modes * (a.rightCols(w) * inverse);
     from_modes.resize(n + w, n);
@@ -103,10 +104,10 @@ Modes::Modes(const ParityClasses::Class& of_class, const Matrix& whole, Real sca
 } // namespace
 
 struct CrossSectionSolver::Basis {
-    Basis(const ParityClasses& of_nodes, std::size_t interior_count, std::size_t stations)
-        : classes(of_nodes), interior(interior_count), fourier(classes.row().size(), stations),
-          columns(fourier.columns()), spectra(classes.row().size() * columns),
-          modes(spectra.size()) {}
+    Basis(ParityClasses of_nodes, std::size_t interior_count, std::size_t stations)
+        : classes(std::move(of_nodes)), interior(interior_count),
+          fourier(classes.row().size(), stations), columns(fourier.columns()),
+          spectra(classes.row().size() * columns), modes(spectra.size()) {}
 
     void divide(const Modes& of_class, Block& q, std::size_t first) const;
     void solve_class(const Modes& of_class, WallSource source, std::size_t first,
@@ -139,10 +140,10 @@ CrossSectionSolver::CrossSectionSolver(std::span<const Real> interior, std::span
         classes = ParityClasses(interior_count, wall_count, {});
         whole = by_classes(interior, wall, classes);
     }
-    basis_ = std::make_unique<Basis>(classes, interior_count, stations);
+    basis_ = std::make_unique<Basis>(std::move(classes), interior_count, stations);
     Basis& basis = *basis_;
     Real largest = 0, highest = 0;
-    for (const ParityClasses::Class& rows : classes.classes()) {
+    for (const ParityClasses::Class& rows : basis.classes.classes()) {
         // the transforms along the axis are not scaled
         const Modes& modes =
             basis.by_class.emplace_back(rows, whole, 1 / static_cast<Real>(stations));
