@@ -32,6 +32,16 @@ def names(stages):
     return [stage.name for stage in stages]
 
 
+def test_quick_looks_at_the_liquid_half_as_often_unless_solids_crowd_the_pipe():
+    def turn(level, fraction):
+        some = {"volume_fraction": fraction, "arrangement": {"kind": "random"}, "count": None}
+        plan = make_plan(case(solids=some, fidelity={"level": level}))
+        return min(limit.value for limit in plan.coupling_step.limits)
+
+    assert turn("quick", 0.05) == pytest.approx(2 * turn("balanced", 0.05))
+    assert turn("quick", 0.3) == turn("balanced", 0.3)
+
+
 @pytest.mark.parametrize(("level", "fraction"), [("quick", 0.3), ("balanced", 0.1), ("fine", 0.05)])
 def test_the_solids_take_the_level_s_share_of_the_rayleigh_time(level, fraction):
     plan = make_plan(case(fidelity={"level": level}))

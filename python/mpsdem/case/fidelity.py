@@ -11,8 +11,9 @@ from mpsdem.case.units import Quantity, Whole
 # up to there (docs/trade.md).
 _RAYLEIGH_FRACTION = {"quick": 0.3, "balanced": 0.1, "fine": 0.05}
 # Twice 0.1 moves settling by less than 0.01 % and a sliding bed by less than chance
-# (docs/trade.md).
+# (docs/trade.md); a pipe full of a packed bed swings at it, at 0.1 it does not (docs/extremes.md).
 _COUPLING_FRACTION = {"quick": 0.2, "balanced": 0.1, "fine": 0.1}
+_CROWDED = 0.1  # [-] mean solid fraction from which all levels exchange as balanced does
 _SPACINGS_ACROSS = {"quick": 10, "balanced": 16, "fine": 24}
 
 
@@ -30,8 +31,8 @@ class Fidelity(Part):
     liquid_step : float, optional
         Longest time step of a computed liquid [s]; Courant number and viscosity may shorten it.
     coupling_step : float, optional
-        Time between two exchanges with the liquid [s]; by default 0.2 (quick) or 0.1 of the times
-        over which the forces on a solid change.
+        Time between two exchanges with the liquid [s]; by default 0.1 of the times over which
+        the forces on a solid change, at quick 0.2 if solids fill less than a tenth of the bore.
     stiffness_factor : float
         Multiplies every modulus and stiffness [-]; less than 1 buys larger steps with overlap.
     smoothing_radius : float, optional
@@ -102,10 +103,12 @@ class Fidelity(Part):
             return self.rayleigh_fraction
         return _RAYLEIGH_FRACTION[self.level]
 
-    @property
-    def coupling_fraction(self) -> float:
-        """Share of the times over which the forces on a solid change, between two exchanges [-]."""
-        return _COUPLING_FRACTION[self.level]
+    def coupling_fraction(self, solids_fraction: float) -> float:
+        """Share of the times over which the forces on a solid change, between two exchanges [-].
+
+        ``solids_fraction`` is the mean in the bore [-].
+        """
+        return _COUPLING_FRACTION[self.level if solids_fraction < _CROWDED else "balanced"]
 
     def resolved_particle_spacing(self, pipe_radius: float) -> float:
         """Distance between the particles of a computed liquid in a bore of that radius [m]."""

@@ -161,7 +161,7 @@ def coupling_limits(case: Case, of_solids: Sequence[Limit]) -> tuple[Limit, ...]
         name = f"the pipe's shortest period of motion, {period:.3g} s"
         scales.append(_Scale(name=name, time=period, worth=_PERIOD_WORTH, share=_SHARE_OF_PERIOD))
     given = case.fidelity.coupling_step
-    share = case.fidelity.coupling_fraction
+    share = case.fidelity.coupling_fraction(case.solids_fraction)
     limits = _limits("coupling_step", given=given, share=share, scales=scales)
     return (*limits, every, prompt)
 
