@@ -21,6 +21,9 @@ constexpr Real viscous_share = 0.8;
 // convection in it, and a viscosity over the void fraction; measured: 1.3 held, 1.6 did not, as the
 // bound is one from above
 constexpr Real viscous_limit_with_solids = 0.9;
+// [-] the same where solids crowd the pipe, whose drag is as stiff: a packed bed swung at 0.9
+constexpr Real viscous_limit_in_a_crowd = 0.6;
+constexpr Real crowd = 0.1;                // [-] mean solid fraction
 constexpr Real courant_with_solids = 0.45; // [-] measured: 0.6 held, 0.78 did not
 
 struct Weights {
@@ -189,6 +192,13 @@ void Liquid::transport() {
     for (const Real nu : of_chunk_) largest_viscosity_ = std::max(largest_viscosity_, nu);
 }
 
+Real Liquid::viscous_limit_loaded() const {
+    if (!loaded_) return viscous_limit_with_solids;
+    const Real liquid =
+        interior_mean([&](std::size_t i) { return total({loaded_->eps[i], stations()}); });
+    return 1 - liquid < crowd ? viscous_limit_with_solids : viscous_limit_in_a_crowd;
+}
+
 /// Longest step that is stable now [s]; not a number where a speed is none.
 Real Liquid::allowed(bool with_solids, AdvanceReport& report) {
     parallel_for(chunks_.count(), numerics_.threads, [&](std::size_t c) {
@@ -211,9 +221,8 @@ Real Liquid::allowed(bool with_solids, AdvanceReport& report) {
     }
     const Real courant =
         (with_solids ? std::min(numerics_.courant, courant_with_solids) : numerics_.courant) / most;
-    const Real viscous =
-        (with_solids ? viscous_limit_with_solids : viscous_limit(numerics_.scheme)) /
-        (viscous_bound_ * largest_viscosity_);
+    const Real viscous = (with_solids ? viscous_limit_loaded() : viscous_limit(numerics_.scheme)) /
+                         (viscous_bound_ * largest_viscosity_);
     const Real step = std::min(courant, viscous);
     if (step < report.shortest) {
         report.shortest = step;

@@ -154,6 +154,7 @@ private:
     }
 
     void transport();
+    [[nodiscard]] Real viscous_limit_loaded() const;
     [[nodiscard]] Real allowed(bool with_solids, AdvanceReport& report);
     void predict(const Stage& stage);
     void project(const Stage& stage, AdvanceReport& report);
