@@ -21,7 +21,7 @@ constexpr Real viscous_share = 0.8;
 // convection in it, and a viscosity over the void fraction; measured: 1.3 held, 1.6 did not, as the
 // bound is one from above
 constexpr Real viscous_limit_with_solids = 0.9;
-// [-] the same where solids crowd the pipe, whose drag is as stiff: a packed bed swung at 0.9
+// [-] the same where solids crowd the pipe: a packed bed swung at 0.9
 constexpr Real viscous_limit_in_a_crowd = 0.6;
 constexpr Real crowd = 0.1;                // [-] mean solid fraction
 constexpr Real courant_with_solids = 0.45; // [-] measured: 0.6 held, 0.78 did not
@@ -192,6 +192,7 @@ void Liquid::transport() {
     for (const Real nu : of_chunk_) largest_viscosity_ = std::max(largest_viscosity_, nu);
 }
 
+/// Viscous limit with solids, by how much of the pipe they fill [-].
 Real Liquid::viscous_limit_loaded() const {
     if (!loaded_) return viscous_limit_with_solids;
     const Real liquid =
