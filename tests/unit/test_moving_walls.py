@@ -282,3 +282,21 @@ def test_what_moving_walls_cannot_have_is_refused_with_its_remedy(change, words)
 def test_walls_that_were_to_move_along_the_pipe_are_refused():
     with pytest.raises(CaseError, match="across the pipe only; leave out the motion along x"):
         case(STRONG | {"direction": "x"}, walls="moving")
+
+
+@pytest.mark.parametrize(
+    ("flow", "amplitude", "said"),
+    [
+        (1.0, 0.004, []),
+        (0.0, 0.004, ["without flow"]),
+        (1.0, 0.02, ["diverge without flow"]),  # at 0.63 m/s
+        (6.0, 0.055, ["curvature of the bore"]),
+    ],
+)
+def test_flexing_beyond_what_particles_bear_is_foreseen(flow, amplitude, said):
+    part = {"direction": "y", "amplitude": amplitude, "period": 0.2, "mode": 2}
+    plan = make_plan(case([part], liquid=WATER | {"bulk_velocity": flow}))
+    warnings = [warning for warning in plan.warnings if "walls that flex" in warning]
+    assert len(warnings) == len(said)
+    for warning, words in zip(warnings, said, strict=True):
+        assert words in warning
