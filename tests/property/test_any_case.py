@@ -238,17 +238,18 @@ def run_keeps_what_must_be_kept(table, model, coupling, motion):
         assume(plan.estimate.wall_seconds < LONGEST)
         assume(not (case.motion.moves_walls and plan.clock.steps > MOST_TURNS))
         flexing = any("walls that flex" in warning for warning in plan.warnings)
+        soft = any("of the radius deep" in warning for warning in plan.warnings)
         try:
             with TemporaryDirectory() as directory, Simulation(case, directory).run() as results:
                 assert list(faults(plan, results)) == []
                 figures = measure(plan, results)
         except SimulationDiverged:
-            assert flexing  # foreseen
+            assert flexing or soft  # foreseen
             return
         doubted = list(doubts(plan, figures))
         if flexing:
             doubted = []
-        if any("of the radius deep" in warning for warning in plan.warnings):
+        if soft:
             doubted = [told for told in doubted if not told.startswith("overlap")]  # as foreseen
         if figures.momentum_error is not None and figures.momentum_error <= ENDS:
             doubted = [told for told in doubted if not told.startswith("momentum")]
